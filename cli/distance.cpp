@@ -1,0 +1,266 @@
+/// The command `fase distance`: signed distances of pairs of shapes from a file, held against published ones.
+#include "cli/distance.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+#include "fase/narrow/distance.hpp"
+#include "fase/scene/files.hpp"
+#include "fase/scene/json.hpp"
+
+namespace fase::cli {
+namespace {
+
+using scene::JsonKind;
+using scene::JsonValue;
+
+constexpr std::size_t most_bytes = std::size_t{1} << 28;
+/// How well a number that was computed with other code, without a stated tolerance, must be met: to float sizes.
+constexpr double computed_tolerance = 1e-6;
+
+/// A shape and its place in the world; no shape: one that Fase does not have.
+struct Placed {
+    std::optional<Shape> shape;
+    TransformD pose;
+    std::string type;
+};
+
+struct Verdict {
+    std::string id;
+    std::optional<double> distance, published, error;
+    bool within = false;
+    std::string skipped;  ///< why; empty: judged
+};
+
+Error bad(const JsonValue& at, std::string problem) {
+    return {Status::Format, fmt::format("{}: {}", at.offset(), at.pointer()), std::move(problem), {}};
+}
+
+/// The member `key` as a number; nullopt when there is none.
+Result<std::optional<double>> number_in(const JsonValue& object, std::string_view key) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value || value->is(JsonKind::Null)) return std::optional<double>{};
+    if (!value->is(JsonKind::Number)) return bad(*value, fmt::format("found {}, need a number", name_of(value->kind())));
+    return std::optional<double>{value->number()};
+}
+
+/// The member `key` as an array of `count` numbers.
+Result<std::array<double, 9>> numbers_in(const JsonValue& object, std::string_view key, std::size_t count) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value) return bad(object, fmt::format("found no \"{}\", need {} numbers", key, count));
+    std::array<double, 9> numbers{};
+    std::size_t found = 0;
+    bool all_numbers = value->is(JsonKind::Array);
+    value->for_each_element([&](const JsonValue& element) {
+        if (!element.is(JsonKind::Number)) {
+            all_numbers = false;
+        } else if (found < count) {
+            numbers[found] = element.number();
+        }
+        ++found;
+    });
+    if (!all_numbers || found != count) return bad(*value, fmt::format("found no array of {} numbers", count));
+    return numbers;
+}
+
+std::size_t size_count(std::string_view type) {
+    if (type == "box") return 3;
+    if (type == "sphere") return 1;
+    return type == "capsule" || type == "cylinder" ? 2 : 0;
+}
+
+Result<Placed> read_shape(const JsonValue& object) {
+    const std::optional<JsonValue> type = object.find("type");
+    if (!type || !type->is(JsonKind::String)) return bad(object, "found no shape, need an object with a \"type\"");
+    Placed placed;
+    placed.type = type->string();
+    const std::size_t count = size_count(placed.type);
+    if (count == 0) return placed;
+
+    const auto size = numbers_in(object, "size", count);
+    if (!size) return size.error();
+    const auto position = numbers_in(object, "pos", 3);
+    if (!position) return position.error();
+    const auto rows = numbers_in(object, "rot", 9);
+    if (!rows) return rows.error();
+    std::array<float, 3> s{};
+    for (std::size_t i = 0; i < count; ++i) {
+        s[i] = static_cast<float>((*size)[i]);
+        if (!(s[i] > 0 && std::isfinite(s[i]))) {
+            return bad(*object.find("size"), fmt::format("found {}, need a size above 0", (*size)[i]));
+        }
+    }
+    const auto& r = *rows;
+    placed.pose.position = {(*position)[0], (*position)[1], (*position)[2]};
+    Mat3d& m = placed.pose.rotation;
+    m = {{r[0], r[3], r[6]}, {r[1], r[4], r[7]}, {r[2], r[5], r[8]}};
+    const Mat3d off = transpose(m) * m - Mat3d::identity();
+    constexpr double orthonormal = 1e-6;
+    const double worst = std::sqrt(length_squared(off.x) + length_squared(off.y) + length_squared(off.z));
+    if (!(worst < orthonormal && determinant(m) > 0)) return bad(*object.find("rot"), "found no rotation matrix");
+
+    if (placed.type == "box") {
+        placed.shape = Box{{s[0], s[1], s[2]}};
+    } else if (placed.type == "sphere") {
+        placed.shape = Sphere{s[0]};
+    } else {
+        if (placed.type == "capsule") {
+            placed.shape = Capsule{s[0], s[1]};
+        } else {
+            placed.shape = Cylinder{s[0], s[1]};
+        }
+        // There the axis is z, here it is y.
+        m = m * Mat3d{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+    }
+    return placed;
+}
+
+Result<Verdict> judge(const JsonValue& one) {
+    if (!one.is(JsonKind::Object)) return bad(one, fmt::format("found {}, need an object", name_of(one.kind())));
+    Verdict verdict;
+    const std::optional<JsonValue> id = one.find("id");
+    if (!id || !id->is(JsonKind::String)) return bad(one, "found no \"id\", need a text");
+    verdict.id = id->string();
+    std::array<Placed, 2> placed;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const char* key = i == 0 ? "a" : "b";
+        const std::optional<JsonValue> shape = one.find(key);
+        if (!shape) return bad(one, fmt::format("found no \"{}\", need a shape", key));
+        Result<Placed> read = read_shape(*shape);
+        if (!read) return read.error();
+        placed[i] = *std::move(read);
+    }
+    const auto published = number_in(one, "distance"), tolerance = number_in(one, "tol");
+    const auto sign = number_in(one, "sign"), computed = number_in(one, "distance_computed_by_us");
+    for (const auto* number : {&published, &tolerance, &sign, &computed}) {
+        if (!*number) return number->error();
+    }
+    if (*published && !*tolerance) return bad(one, "found a \"distance\" without \"tol\", need both");
+
+    for (const Placed& p : placed) {
+        if (!p.shape) verdict.skipped = fmt::format("Fase has no shape {}", scene::quoted_short(p.type));
+    }
+    if (!verdict.skipped.empty()) return verdict;
+    const TransformD b_in_a = inverse(placed[0].pose) * placed[1].pose;
+    const double distance = narrow::signed_distance(*placed[0].shape, *placed[1].shape, b_in_a).distance;
+    verdict.distance = distance;
+    if (!*published && !*sign && !*computed) {
+        verdict.skipped = "no published number";
+        return verdict;
+    }
+    verdict.within = true;
+    if (*sign) verdict.within = **sign > 0 ? distance > 0 : **sign < 0 ? distance < 0 : distance == 0;
+    const auto hold_against = [&](double number, double allowed) {
+        verdict.published = number;
+        verdict.error = std::abs(distance - number);
+        if (!(*verdict.error <= allowed)) verdict.within = false;
+    };
+    if (*computed) hold_against(**computed, computed_tolerance);
+    if (*published) hold_against(**published, **tolerance);
+    return verdict;
+}
+
+Result<std::vector<Verdict>> judge_file(const std::string& file) {
+    const auto bytes = scene::read_file(file, most_bytes);
+    if (!bytes) return bytes.error();
+    const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    if (!document) return document.error();
+    const std::optional<JsonValue> cases = document->root().find("cases");
+    if (!cases || !cases->is(JsonKind::Array)) {
+        return Error{Status::Format, "0", "found no \"cases\", need an object with an array of that name", {}};
+    }
+    std::vector<Verdict> verdicts;
+    std::optional<Error> wrong;
+    cases->for_each_element([&](const JsonValue& one) {
+        if (wrong) return;
+        Result<Verdict> verdict = judge(one);
+        if (verdict) {
+            verdicts.push_back(*std::move(verdict));
+        } else {
+            wrong = verdict.error();
+        }
+    });
+    if (wrong) return *wrong;
+    return verdicts;
+}
+
+/// Text that can do no harm on a terminal.
+std::string plain(std::string_view text) {
+    const std::string quoted = scene::quoted(text);
+    return quoted.substr(1, quoted.size() - 2);
+}
+
+std::string json_of(const std::optional<double>& number) {
+    return number && std::isfinite(*number) ? fmt::format("{}", *number) : "null";
+}
+
+struct Summary {
+    std::size_t total = 0, within = 0, skipped = 0;
+    double worst_error = 0;
+};
+
+void print_json(const std::vector<Verdict>& verdicts, const Summary& sum) {
+    std::string text = fmt::format(R"({{"total": {}, "within": {}, "skipped": {}, "worst_error": {}, "cases": [)", sum.total,
+                                   sum.within, sum.skipped, sum.worst_error);
+    bool first = true;
+    for (const Verdict& v : verdicts) {
+        text += fmt::format("{}\n {{\"id\": {}, \"distance\": {}, \"published\": {}, \"error\": {}, \"within\": {}, \"skipped\": {}}}",
+                            first ? "" : ",", scene::quoted(v.id), json_of(v.distance), json_of(v.published),
+                            json_of(v.error), v.skipped.empty() ? (v.within ? "true" : "false") : "null",
+                            v.skipped.empty() ? "null" : scene::quoted(v.skipped));
+        first = false;
+    }
+    text += "\n]}\n";
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void print_lines(const std::vector<Verdict>& verdicts, const Summary& sum) {
+    std::string text;
+    for (const Verdict& v : verdicts) {
+        text += plain(v.id);
+        if (v.distance) text += fmt::format("  distance {:.9g}", *v.distance);
+        if (v.error) text += fmt::format("  published {:.9g}  error {:.2g}", *v.published, *v.error);
+        if (!v.skipped.empty()) {
+            text += fmt::format("  skipped: {}", plain(v.skipped));
+        } else {
+            text += v.within ? "  ok" : "  WRONG";
+        }
+        text += '\n';
+    }
+    text += fmt::format("{} of {} within tolerance ({} skipped, worst error {:.2g})\n", sum.within,
+                        sum.total - sum.skipped, sum.skipped, sum.worst_error);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+}  // namespace
+
+int run_distance(const DistanceOptions& options) {
+    const Result<std::vector<Verdict>> verdicts = judge_file(options.file);
+    if (!verdicts) {
+        const Error& error = verdicts.error();
+        const bool names_file = error.where.rfind(options.file, 0) == 0;
+        const std::string where = names_file ? error.where : options.file + ":" + error.where;
+        fmt::print(stderr, "fase: error: {}: {}\n", plain(where), plain(error.problem));
+        return error.status == Status::Io ? 3 : 2;
+    }
+    Summary sum;
+    sum.total = verdicts->size();
+    for (const Verdict& v : *verdicts) {
+        if (!v.skipped.empty()) ++sum.skipped;
+        if (v.skipped.empty() && v.within) ++sum.within;
+        if (v.error && *v.error > sum.worst_error) sum.worst_error = *v.error;
+    }
+    if (options.json) {
+        print_json(*verdicts, sum);
+    } else {
+        print_lines(*verdicts, sum);
+    }
+    return sum.within + sum.skipped == sum.total ? 0 : 1;
+}
+
+}  // namespace fase::cli

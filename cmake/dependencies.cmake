@@ -1,0 +1,14 @@
+# The libraries that Fase stands on. None of them shows in a public header: all are linked PRIVATE.
+
+# Visible everywhere, so that a project that takes Fase in by add_subdirectory() can link it.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+find_package(Threads REQUIRED)
+find_package(hwy CONFIG REQUIRED)            # SIMD
+find_package(TBB CONFIG REQUIRED)            # threads
+find_package(zstd CONFIG REQUIRED)           # recordings
+find_package(TinyGLTF CONFIG REQUIRED)       # scenes
+find_package(nlohmann_json CONFIG REQUIRED)  # scenes, reports
+find_package(fmt CONFIG REQUIRED)            # messages
+
+set(FASE_PRIVATE_LIBRARIES hwy::hwy TBB::tbb zstd::libzstd_shared TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json fmt::fmt
+                           Threads::Threads)

@@ -1,0 +1,125 @@
+/// Each call visits the variant once and goes on in the structure's own type.
+#include "fase/broad/any_structure.hpp"
+
+#include "fase/broad/find_pairs.hpp"
+
+namespace fase::broad {
+
+Result<AnyStructure> AnyStructure::named(std::string_view name) {
+    AnyStructure found;
+    bool known = false;
+    for_each_structure([&]<Structure S>() {
+        if (S::info.name != name) return;
+        found.structure_.template emplace<S>();
+        known = true;
+    });
+    if (!known) {
+        return Error{Status::BadArgument, "structure", "found \"" + std::string(name) + "\", need one of " + names(),
+                     ""};
+    }
+    return found;
+}
+
+std::string AnyStructure::names() {
+    std::string all;
+    for_each_structure([&]<Structure S>() { all += (all.empty() ? "" : ", ") + std::string(S::info.name); });
+    return all;
+}
+
+AnyStructure::AnyStructure() {
+    for_each_structure([&]<Structure S>() {
+        if (S::info.name == default_structure) structure_.template emplace<S>();
+    });
+}
+
+void AnyStructure::insert(std::span<const Move> boxes) {
+    std::visit(
+        [&](auto& s) {
+            for (const Move& m : boxes) s.insert(m.proxy, m.box);
+        },
+        structure_);
+}
+
+void AnyStructure::move(std::span<const Move> boxes) {
+    std::visit(
+        [&](auto& s) {
+            for (const Move& m : boxes) s.move(m.proxy, m.box);
+        },
+        structure_);
+}
+
+void AnyStructure::erase(std::span<const Proxy> proxies) {
+    std::visit(
+        [&](auto& s) {
+            for (const Proxy p : proxies) s.erase(p);
+        },
+        structure_);
+}
+
+void AnyStructure::clear() {
+    std::visit([](auto& s) { s.clear(); }, structure_);
+}
+
+void AnyStructure::commit() {
+    std::visit([](auto& s) { s.commit(); }, structure_);
+}
+
+void AnyStructure::find_pairs(std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_pairs(s, out); }, structure_);
+}
+
+void AnyStructure::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_pairs(tasks, s, out); }, structure_);
+}
+
+void AnyStructure::find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const {
+    find_pairs_of(askers, {}, out);
+}
+
+void AnyStructure::find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+                                 std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_pairs_of(s, askers, is_asker, out); }, structure_);
+}
+
+void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> askers,
+                                 std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, askers, is_asker, out); }, structure_);
+}
+
+void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
+    std::visit([&](const auto& a, const auto& b) { broad::find_pairs_between(a, b, out); }, structure_,
+               other.structure_);
+}
+
+void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
+    traverse(BoxRegion{box}, [&](Proxy p, const Aabb&) {
+        out.push_back(p);
+        return true;
+    });
+}
+
+StructureInfo AnyStructure::info() const {
+    return std::visit([]<class S>(const S&) -> StructureInfo { return S::info; }, structure_);
+}
+
+std::size_t AnyStructure::size() const {
+    return std::visit([](const auto& s) { return s.size(); }, structure_);
+}
+
+std::size_t AnyStructure::bytes() const {
+    return std::visit([](const auto& s) { return s.bytes(); }, structure_);
+}
+
+std::string AnyStructure::broken_invariant() const {
+    return std::visit([](const auto& s) { return s.broken_invariant(); }, structure_);
+}
+
+void AnyStructure::cells(std::vector<DrawnCell>& out) const {
+    std::visit(
+        [&]<class S>(const S& s) {
+            if constexpr (Drawable<S>) s.cells(out);
+        },
+        structure_);
+}
+
+}  // namespace fase::broad

@@ -1,0 +1,64 @@
+#pragma once
+/// A structure chosen at run time by its name.
+#include <span>
+#include <variant>
+
+#include "fase/broad/registry.hpp"
+#include "fase/core/result.hpp"
+
+namespace fase::broad {
+
+/// One structure of the registry behind calls that hand over many boxes at once: one branch a call, none a box. The
+/// contracts are those of the concept Structure; default: the default structure, empty. Copies are deep.
+class AnyStructure {
+public:
+    /// The structure with that name, empty. BadArgument with all names when there is none.
+    [[nodiscard]] static Result<AnyStructure> named(std::string_view name);
+    /// "brute_force, dynamic_bvh, …": for help and error texts.
+    [[nodiscard]] static std::string names();
+
+    AnyStructure();
+
+    void insert(std::span<const Move> boxes);
+    void move(std::span<const Move> boxes);
+    void erase(std::span<const Proxy> proxies);
+    void clear();
+    /// To be called after changes and before anything const.
+    void commit();
+
+    /// Appends each pair of stored boxes once, smaller proxy first; sort them for an order that does not depend on the
+    /// structure.
+    void find_pairs(std::vector<Pair>& out) const;
+    void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_asker` does.
+    void find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const;
+    void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+                       std::vector<Pair>& out) const;
+    void find_pairs_of(TaskRunner& tasks, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+                       std::vector<Pair>& out) const;
+    /// Appends each pair of a box stored here and one stored in `other` (which may be of another kind); cheapest for
+    /// two trees of one kind. Proxies of both count as one numbering.
+    void find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const;
+    /// Appends the proxies of the stored boxes that overlap `box`, in the structure's own order.
+    void overlapping(const Aabb& box, std::vector<Proxy>& out) const;
+    /// As Structure::traverse: `visit(proxy, box)` returns false to stop.
+    template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
+        std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+    }
+
+    [[nodiscard]] StructureInfo info() const;
+    [[nodiscard]] std::size_t size() const;
+    /// Memory in use, spare capacity included.
+    [[nodiscard]] std::size_t bytes() const;
+    /// "" when all is well; else what is not. O(n).
+    [[nodiscard]] std::string broken_invariant() const;
+    /// Appends the boxes of the structure's cells; none when it has none to draw.
+    void cells(std::vector<DrawnCell>& out) const;
+
+private:
+    template <class> struct VariantOf;
+    template <class... S> struct VariantOf<StructureList<S...>> { using type = std::variant<S...>; };
+    VariantOf<AllStructures>::type structure_;
+};
+
+}  // namespace fase::broad

@@ -1,0 +1,122 @@
+#pragma once
+/// All pairs of one structure, of two, and of a list of boxes against a structure: the best way that each one offers.
+#include <span>
+
+#include "fase/broad/pair_sink.hpp"
+#include "fase/broad/structure.hpp"
+#include "fase/core/tasks.hpp"
+
+namespace fase::broad {
+
+/// A structure that shares the search among threads: the same pairs as find_pairs(out), in an order that does not
+/// depend on how many threads there are.
+template <class S>
+concept FindsOwnPairsInParallel = Structure<S> && requires(const S& c, TaskRunner& tasks, std::vector<Pair>& out) {
+    c.find_pairs(tasks, out);
+};
+
+/// A structure that finds the pairs with another of its kind faster than one query a box can.
+template <class S>
+concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& other, std::vector<Pair>& out) {
+    c.find_pairs_with(other, out);
+};
+
+/// Appends, for each asker, a pair with every stored box that its box overlaps; never with itself, should it be stored.
+/// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all.
+/// When two askers are both stored here, their pair is found from both sides and so appears twice, unless `is_asker`
+/// (by proxy: 0 or 1; proxies past its end are none) marks them: then only the smaller asks. Cost: one query an asker.
+template <Structure S>
+void find_pairs_of(const S& structure, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+                   std::vector<Pair>& out) {
+    PairSink sink(out);
+    for (const Move& asker : askers) {
+        const Proxy p = asker.proxy;
+        structure.traverse(BoxRegion{asker.box}, [&](Proxy q, const Aabb&) {
+            const bool asked_by_q = q < p && q < is_asker.size() && is_asker[q] != 0;
+            if (p != q && !asked_by_q) sink.add(p, q);
+            return true;
+        });
+    }
+}
+template <Structure S> void find_pairs_of(const S& structure, std::span<const Move> askers, std::vector<Pair>& out) {
+    find_pairs_of(structure, askers, {}, out);
+}
+
+/// The same by several threads: the askers are cut into ranges, whose pairs are appended in the order of the askers.
+template <Structure S>
+void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
+                   std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+    constexpr std::size_t grain = 512;
+    if (tasks.threads() == 1 || askers.size() <= grain) return find_pairs_of(structure, askers, is_asker, out);
+    std::vector<std::vector<Pair>> found((askers.size() + grain - 1) / grain);
+    parallel_ranges(tasks, askers.size(), grain, [&](std::size_t begin, std::size_t end) {
+        find_pairs_of(structure, askers.subspan(begin, end - begin), is_asker, found[begin / grain]);
+    });
+    for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
+}
+
+/// All that is stored, appended in the structure's own order.
+template <Structure S> void stored_boxes(const S& structure, std::vector<Move>& out) {
+    out.reserve(out.size() + structure.size());
+    structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
+        out.push_back({p, box});
+        return true;
+    });
+}
+
+/// Appends every overlapping pair of stored boxes once, smaller proxy first, in no order that counts. One query a box,
+/// unless the structure knows better.
+template <Structure S> void find_pairs(const S& structure, std::vector<Pair>& out) {
+    if constexpr (FindsOwnPairs<S>) {
+        structure.find_pairs(out);
+    } else {
+        PairSink sink(out);
+        structure.traverse(Everything{}, [&](Proxy p, const Aabb& mine) {
+            structure.traverse(BoxRegion{mine}, [&](Proxy q, const Aabb&) {
+                if (p < q) sink.add(p, q);
+                return true;
+            });
+            return true;
+        });
+    }
+}
+
+/// The same pairs, found by several threads; the order may differ from the one of a single thread, but not with the
+/// number of threads of `tasks` when that is above 1. Sorted, all are equal.
+template <Structure S> void find_pairs(TaskRunner& tasks, const S& structure, std::vector<Pair>& out) {
+    if constexpr (FindsOwnPairsInParallel<S>) {
+        if (tasks.threads() > 1) return structure.find_pairs(tasks, out);
+        find_pairs(structure, out);
+    } else if constexpr (FindsOwnPairs<S>) {
+        structure.find_pairs(out);
+    } else {
+        if (tasks.threads() == 1) return find_pairs(structure, out);
+        std::vector<Move> all;
+        stored_boxes(structure, all);
+        Proxy largest = 0;
+        for (const Move& m : all) largest = m.proxy > largest ? m.proxy : largest;
+        const std::vector<std::uint8_t> all_ask(largest + std::size_t{1}, 1);
+        find_pairs_of(tasks, structure, all, all_ask, out);
+    }
+}
+
+/// Appends every pair of a box stored in `a` and one stored in `b` that overlap. Proxies of both count as one
+/// numbering: a proxy that is stored in both is not paired with itself (and a pair that is stored in both is found
+/// twice).
+template <Structure A, Structure B> void find_pairs_between(const A& a, const B& b, std::vector<Pair>& out) {
+    const bool a_asks = a.size() < b.size();
+    const std::size_t few = a_asks ? a.size() : b.size(), many = a_asks ? b.size() : a.size();
+    if constexpr (std::same_as<A, B> && FindsPairsWithItsKind<A>) {
+        if (few >= many / 16) return a.find_pairs_with(b, out);  // below that, measured, asking is as fast
+    }
+    std::vector<Move> askers;
+    if (a_asks) {
+        stored_boxes(a, askers);
+        find_pairs_of(b, askers, out);
+    } else {
+        stored_boxes(b, askers);
+        find_pairs_of(a, askers, out);
+    }
+}
+
+}  // namespace fase::broad

@@ -1,0 +1,24 @@
+#pragma once
+/// The one place that names every structure. To add one: its header, and its line here.
+#include "fase/broad/brute_force.hpp"
+#include "fase/broad/dynamic_bvh.hpp"
+
+namespace fase::broad {
+
+template <Structure... S> struct StructureList {};
+
+/// Brute force stands first: it judges the others.
+using AllStructures = StructureList<  //
+    BruteForce,                       //
+    DynamicBvh>;
+
+/// Calls f.operator()<S>() for every structure, in the order of the list.
+template <class F, class... S> void for_each_structure(F&& f, StructureList<S...>) {
+    (f.template operator()<S>(), ...);
+}
+template <class F> void for_each_structure(F&& f) { for_each_structure(f, AllStructures{}); }
+
+/// The structure that is used when the user names none, or "auto".
+inline constexpr std::string_view default_structure = DynamicBvh::info.name;
+
+}  // namespace fase::broad

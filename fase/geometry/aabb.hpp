@@ -1,0 +1,59 @@
+#pragma once
+/// Axis-aligned boxes in float.
+#include <cmath>
+#include <limits>
+
+#include "fase/math/pose.hpp"
+
+namespace fase {
+
+/// Axis-aligned box, closed at both ends: touching boxes overlap. Default: empty, overlaps nothing. May be infinite.
+struct Aabb {
+    static constexpr float infinity = std::numeric_limits<float>::infinity();
+    Vec3 lo{infinity, infinity, infinity};
+    Vec3 hi{-infinity, -infinity, -infinity};
+    friend constexpr bool operator==(const Aabb&, const Aabb&) = default;
+    /// The box that holds everything.
+    static constexpr Aabb everything() {
+        return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
+    }
+};
+
+constexpr bool overlaps(const Aabb& a, const Aabb& b) {
+    return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
+           b.lo.z <= a.hi.z;
+}
+constexpr Aabb merge(const Aabb& a, const Aabb& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
+constexpr bool contains(const Aabb& outer, const Aabb& inner) {
+    return outer.lo.x <= inner.lo.x && outer.lo.y <= inner.lo.y && outer.lo.z <= inner.lo.z &&
+           inner.hi.x <= outer.hi.x && inner.hi.y <= outer.hi.y && inner.hi.z <= outer.hi.z;
+}
+constexpr bool contains(const Aabb& box, Vec3 p) { return contains(box, Aabb{p, p}); }
+/// No point inside: some lo above its hi, or a NaN.
+constexpr bool is_empty(const Aabb& a) { return !(a.lo.x <= a.hi.x && a.lo.y <= a.hi.y && a.lo.z <= a.hi.z); }
+/// Middle of a finite box; NaN on axes that are infinite both ways.
+constexpr Vec3 centre(const Aabb& a) { return (a.lo + a.hi) * 0.5f; }
+constexpr Vec3 extent(const Aabb& a) { return a.hi - a.lo; }
+constexpr float surface_area(const Aabb& a) {
+    const Vec3 e = extent(a);
+    return 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
+/// Grown by `margin` metres on every side.
+constexpr Aabb grown(const Aabb& a, float margin) {
+    const Vec3 m{margin, margin, margin};
+    return {a.lo - m, a.hi + m};
+}
+/// Float box of a double one, rounded outward: never smaller than what it stands for.
+inline Aabb rounded_outward(Vec3d lo, Vec3d hi) {
+    const auto down = [](double v) {
+        const float f = static_cast<float>(v);
+        return f > v ? std::nextafter(f, -Aabb::infinity) : f;
+    };
+    const auto up = [](double v) {
+        const float f = static_cast<float>(v);
+        return f < v ? std::nextafter(f, Aabb::infinity) : f;
+    };
+    return {{down(lo.x), down(lo.y), down(lo.z)}, {up(hi.x), up(hi.y), up(hi.z)}};
+}
+
+}  // namespace fase

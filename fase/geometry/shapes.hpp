@@ -1,0 +1,57 @@
+#pragma once
+/// THE list of shapes: the one place that names every shape. Tables, tests, files and docs loop over it.
+#include <concepts>
+#include <cstddef>
+#include <string_view>
+#include <variant>
+
+#include "fase/geometry/shapes/box.hpp"
+#include "fase/geometry/shapes/capsule.hpp"
+#include "fase/geometry/shapes/convex_hull.hpp"
+#include "fase/geometry/shapes/cylinder.hpp"
+#include "fase/geometry/shapes/half_space.hpp"
+#include "fase/geometry/shapes/sphere.hpp"
+
+namespace fase {
+
+/// Anything with a name.
+template <class S>
+concept NamedShape = requires {
+    { S::name } -> std::convertible_to<std::string_view>;
+};
+
+/// A bounded convex shape: a core with support points, grown by a radius (a sphere is a point grown by its radius).
+template <class S>
+concept ConvexShape = NamedShape<S> && requires(const S& shape, Vec3 f, Vec3d d) {
+    { shape.core_support(f) } -> std::same_as<Vec3>;
+    { shape.core_support(d) } -> std::same_as<Vec3d>;
+    { shape.core_radius() } -> std::convertible_to<float>;
+};
+
+/// A list of shapes; its order is the order of the kinds in tables and files.
+template <NamedShape... S>
+struct ShapeList {
+    using Variant = std::variant<S...>;
+    static constexpr std::size_t count = sizeof...(S);
+};
+using AllShapes = ShapeList<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpace>;
+
+/// Any one shape.
+using Shape = AllShapes::Variant;
+
+/// Calls f.operator()<S>() for every shape of the list, in its order.
+template <class F, class... S>
+void for_each_shape(F&& f, ShapeList<S...>) {
+    (f.template operator()<S>(), ...);
+}
+template <class F>
+void for_each_shape(F&& f) {
+    for_each_shape(f, AllShapes{});
+}
+
+/// The shape's name as in the list: "sphere", "box" …
+[[nodiscard]] inline std::string_view name_of(const Shape& shape) {
+    return std::visit([]<class S>(const S&) { return S::name; }, shape);
+}
+
+}  // namespace fase

@@ -1,0 +1,112 @@
+/// The signed distance of any two shapes with the points that show it, in double.
+#include "fase/narrow/distance.hpp"
+
+#include <limits>
+
+#include "fase/narrow/penetration.hpp"
+
+namespace fase::narrow {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// From closest points of cores, or any pair of them at that distance along the normal, to those of the surfaces.
+Distance with_radii(double core_distance, Vec3d on_a, Vec3d normal, double radius_a, double radius_b) {
+    Distance result;
+    result.distance = core_distance - radius_a - radius_b;
+    result.normal = normal;
+    result.on_a = on_a + normal * radius_a;
+    result.on_b = result.on_a + normal * result.distance;
+    return result;
+}
+
+Distance of_cores(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
+    const GjkResult apart = gjk(a, b, b_in_a);
+    const bool overlap = apart.state == GjkResult::State::Overlap;
+    if (!overlap && apart.distance > 1e-7 * apart.scale) {
+        return with_radii(apart.distance, apart.on_a, apart.normal, a.radius, b.radius);
+    }
+    PenetrationOptions options;
+    options.tolerance = 1e-10 * apart.scale;
+    Penetration way = penetration(a, b, b_in_a, apart.simplex, options);
+    // So close that neither distance nor normal of GJK can be trusted: what counts is the wider proven gap.
+    if (!overlap) {
+        const double gap = -depth_along(a, b, b_in_a, apart.normal);
+        if (gap > -way.depth) return with_radii(gap, apart.on_a, apart.normal, a.radius, b.radius);
+    }
+    GjkResult touch = moved_apart(a, b, b_in_a, way, apart.scale);
+    // On curved cores the normal there is better than the one that led there, as long as that depth is less.
+    for (int i = 0; i < 12 && way.state != Penetration::State::Exact; ++i) {
+        const double depth = depth_along(a, b, b_in_a, touch.normal);
+        if (!(depth < way.depth)) break;
+        way.normal = touch.normal;
+        way.depth = depth;
+        touch = moved_apart(a, b, b_in_a, way, apart.scale);
+    }
+    return with_radii(-way.depth, touch.on_a, way.normal, a.radius, b.radius);
+}
+
+/// a is the half-space.
+Distance of_ground(const CoreView& b, const TransformD& b_in_a) {
+    const Vec3d lowest = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, {0, -1, 0})));
+    return with_radii(lowest.y, {lowest.x, 0, lowest.z}, {0, 1, 0}, 0, b.radius);
+}
+
+Distance of_two_grounds(const TransformD& b_in_a) {
+    const Vec3d up{0, 1, 0}, up_b = b_in_a.rotation.y;
+    Distance result;
+    result.normal = up;
+    const bool facing = up_b.y < 0 && std::abs(up_b.x) < 1e-12 && std::abs(up_b.z) < 1e-12;
+    const Vec3d at = b_in_a.position;
+    result.on_a = {at.x, 0, at.z};
+    if (facing) {
+        result.distance = at.y;
+        result.on_b = at;
+    } else {
+        result.distance = -infinity;
+        result.on_b = result.on_a;
+    }
+    return result;
+}
+
+Distance turned_round(const Distance& d, const TransformD& b_in_a) {
+    return {d.distance, transform(b_in_a, d.on_b), transform(b_in_a, d.on_a), -(b_in_a.rotation * d.normal)};
+}
+
+}  // namespace
+
+Distance signed_distance(const Shape& a, const Shape& b, const TransformD& b_in_a) {
+    return std::visit(
+        [&]<class A, class B>(const A& s, const B& t) -> Distance {
+            if constexpr (ConvexShape<A> && ConvexShape<B>) {
+                return of_cores(core_view(s), core_view(t), b_in_a);
+            } else if constexpr (ConvexShape<B>) {
+                return of_ground(core_view(t), b_in_a);
+            } else if constexpr (ConvexShape<A>) {
+                return turned_round(of_ground(core_view(s), inverse(b_in_a)), b_in_a);
+            } else {
+                return of_two_grounds(b_in_a);
+            }
+        },
+        a, b);
+}
+
+bool overlaps(const Shape& a, const Shape& b, const TransformD& b_in_a) {
+    return std::visit(
+        [&]<class A, class B>(const A& s, const B& t) {
+            if constexpr (ConvexShape<A> && ConvexShape<B>) {
+                const CoreView view_a = core_view(s), view_b = core_view(t);
+                GjkOptions options;
+                options.farther_than = view_a.radius + view_b.radius;
+                const GjkResult result = gjk(view_a, view_b, b_in_a, options);
+                if (result.state == GjkResult::State::Overlap) return true;
+                return result.state == GjkResult::State::Apart &&
+                       result.distance <= options.farther_than + 1e-15 * result.scale;
+            } else {
+                return signed_distance(a, b, b_in_a).distance <= 0;
+            }
+        },
+        a, b);
+}
+
+}  // namespace fase::narrow

@@ -1,0 +1,268 @@
+/// Walks the chunks of a file and decodes blocks on demand.
+#include "fase/record/player.hpp"
+
+#include <algorithm>
+#include <new>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "fase/record/block_reader.hpp"
+#include "fase/record/bytes.hpp"
+#include "fase/record/chunk_packer.hpp"
+#include "fase/record/crc32.hpp"
+#include "fase/record/format.hpp"
+#include "fase/record/input_file.hpp"
+
+namespace fase::record {
+namespace {
+
+struct Block {
+    std::uint64_t offset = 0;  ///< of its chunk
+    std::uint64_t first_frame = 0;
+    std::uint32_t frames = 0;
+};
+
+Error no_memory(const std::string& path) {
+    return {Status::NoMemory, path, "not enough memory to read it", "close other programs, or record fewer bodies"};
+}
+
+}  // namespace
+
+struct Player::State {
+    explicit State(InputFile from) : file(std::move(from)) {}
+
+    [[nodiscard]] std::string at(std::uint64_t offset) const { return file.path() + ":" + std::to_string(offset); }
+    Result<void> read_file_head() const;
+    /// The chunk's bytes from type to the end of its body in `bytes`; its check is right.
+    Result<ChunkBody> read_chunk(std::uint64_t offset);
+    /// Takes a chunk in. Whether it was the last.
+    Result<bool> take(const ChunkBody& chunk, std::uint64_t offset);
+    Result<void> take_block(const ChunkBody& chunk, std::uint64_t offset);
+    Result<void> walk();
+    Result<void> load(const Block& block);
+
+    InputFile file;
+    Tables tables;
+    std::vector<Block> blocks;
+    std::vector<std::byte> bytes;
+    std::uint64_t table_bytes = 0, good_bytes = 0;
+    bool has_head = false, complete = false;
+    std::string lost;
+    std::optional<BlockReader> reader;
+    std::uint64_t reader_block = 0;  ///< offset of the block that `reader` holds
+};
+
+Result<void> Player::State::read_file_head() const {
+    std::array<std::byte, file_head_bytes> head;
+    const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), head.size()));
+    if (Result<void> read = file.read(0, std::span(head).first(length)); !read) return read;
+    ByteReader in(std::span<const std::byte>(head).first(length));
+    const auto magic = in.get_bytes(file_magic.size());
+    const auto version = in.get<std::uint32_t>();
+    const bool same = magic.size() == file_magic.size() &&
+                      std::equal(magic.begin(), magic.end(), std::as_bytes(std::span(file_magic)).begin());
+    if (!same) return Error{Status::Format, at(0), "found no recording, need a file that begins with FASEREC", {}};
+    const auto check = in.get<std::uint32_t>();
+    if (in.failed()) return Error{Status::Format, at(length), "found the end of the file in its head", {}};
+    if (check != crc32(std::span<const std::byte>(head).first(12))) {
+        return Error{Status::Format, at(8), "found a head whose check sum is wrong", {}};
+    }
+    if (version != format_version) {
+        return Error{Status::Format, at(8), "found version " + std::to_string(version) + ", this program reads " +
+                     std::to_string(format_version), "use the version of fase that made it"};
+    }
+    return {};
+}
+
+Result<ChunkBody> Player::State::read_chunk(std::uint64_t offset) {
+    const std::uint64_t left = file.size() - std::min(offset, file.size());
+    if (left < chunk_frame_bytes) return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
+    std::array<std::byte, 8> head;
+    if (Result<void> read = file.read(offset, head); !read) return read.error();
+    ByteReader in(head);
+    const ChunkType type{in.get<std::uint32_t>()};
+    const std::uint64_t length = in.get<std::uint32_t>();
+    if (length > left - chunk_frame_bytes) return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
+    if (length > packed_head_bytes + most_raw_bytes) {
+        return Error{Status::Format, at(offset), "found a chunk that is longer than any may be", {}};
+    }
+    bytes.resize(static_cast<std::size_t>(length + chunk_frame_bytes));
+    if (Result<void> read = file.read(offset, bytes); !read) return read.error();
+    const std::span<const std::byte> all(bytes);
+    ByteReader check(all.last(4));
+    if (check.get<std::uint32_t>() != crc32(all.first(all.size() - 4))) {
+        return Error{Status::Format, at(offset), "found a chunk whose check sum is wrong", {}};
+    }
+    return ChunkBody{type, all.subspan(8, static_cast<std::size_t>(length))};
+}
+
+Result<void> Player::State::take_block(const ChunkBody& chunk, std::uint64_t offset) {
+    Result<std::vector<std::byte>> raw = unpack(chunk);
+    if (!raw) return raw.error();
+    ByteReader in(*raw);
+    Block block{offset, in.get<std::uint64_t>(), in.get<std::uint32_t>()};
+    const std::uint64_t expected = blocks.empty() ? 0 : blocks.back().first_frame + blocks.back().frames;
+    if (in.failed() || block.first_frame != expected || block.frames == 0 || block.frames > most_block_frames) {
+        return Error{Status::Format, {}, "found a block out of its order", {}};
+    }
+    blocks.push_back(block);
+    return {};
+}
+
+Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
+    const bool is_head = chunk.type == head_chunk;
+    if (is_head == has_head) return Error{Status::Format, {}, is_head ? "found a second head" : "found no head first", {}};
+    if (chunk.type == frames_chunk) {
+        if (Result<void> taken = take_block(chunk, offset); !taken) return taken.error();
+        return false;
+    }
+    if (chunk.type == index_chunk) return true;
+    if (!is_head && !holds_rows(chunk.type)) return false;
+    const Result<std::uint64_t> length = raw_length(chunk);
+    if (!length) return length.error();
+    table_bytes += *length;
+    if (table_bytes > free_table_bytes + most_table_packing * file.size()) {
+        return Error{Status::Format, {}, "found tables that expand to more than those of a file of its size may", {}};
+    }
+    const Result<std::vector<std::byte>> raw = unpack(chunk);
+    if (!raw) return raw.error();
+    if (is_head) {
+        Result<Head> head = read_head(*raw);
+        if (!head) return head.error();
+        tables.head = std::move(*head);
+        has_head = true;
+        return false;
+    }
+    if (Result<void> read = read_rows(chunk.type, *raw, tables); !read) return read.error();
+    return false;
+}
+
+Result<void> Player::State::walk() {
+    if (Result<void> head = read_file_head(); !head) return head;
+    std::uint64_t offset = file_head_bytes;
+    Error stopped;
+    bool ended = false;
+    good_bytes = offset;
+    while (offset < file.size() && !ended) {
+        const Result<ChunkBody> chunk = read_chunk(offset);
+        if (!chunk) {
+            if (chunk.status() == Status::Io) return chunk.error();
+            stopped = chunk.error();
+            break;
+        }
+        const std::uint64_t next = offset + chunk_frame_bytes + (*chunk).bytes.size();
+        const Result<bool> taken = take(*chunk, offset);
+        if (!taken) {
+            stopped = taken.error();
+            stopped.where = at(offset) + (stopped.where.empty() ? "" : ": " + stopped.where);
+            break;
+        }
+        ended = *taken;
+        offset = next;
+        good_bytes = offset;
+    }
+    if (!has_head) {
+        if (stopped.problem.empty()) stopped = {Status::Format, at(offset), "found the end of the file before its first chunk", {}};
+        stopped.status = Status::Format;
+        return stopped;
+    }
+    complete = ended && offset + tail_bytes == file.size();
+    if (complete) {
+        good_bytes = file.size();
+        return {};
+    }
+    const Block last = blocks.empty() ? Block{} : blocks.back();
+    const std::string so_far = std::to_string(last.first_frame + last.frames) + " frames are there";
+    if (!stopped.problem.empty()) {
+        lost = "byte " + std::to_string(offset) + " of " + std::to_string(file.size()) + ": " + stopped.problem +
+               "; what follows is lost, " + so_far;
+    } else if (!ended) {
+        lost = "the recording was not finished: " + so_far;
+    } else {
+        lost = "bytes follow the end of the recording, or its last ones are missing: " + so_far;
+    }
+    return {};
+}
+
+Result<void> Player::State::load(const Block& block) {
+    if (reader && reader_block == block.offset) return {};
+    reader.reset();
+    const Result<ChunkBody> chunk = read_chunk(block.offset);
+    if (!chunk) return chunk.error();
+    Result<std::vector<std::byte>> raw = unpack(*chunk);
+    if (!raw) return raw.error();
+    Result<BlockReader> opened = BlockReader::open(std::move(*raw), tables);
+    if (!opened) return opened.error();
+    if ((*chunk).type != frames_chunk || (*opened).first_frame() != block.first_frame || (*opened).frames() != block.frames) {
+        return Error{Status::Format, at(block.offset), "found another block than before: the file was changed", {}};
+    }
+    reader.emplace(std::move(*opened));
+    reader_block = block.offset;
+    return {};
+}
+
+Player::Player(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Player::Player(Player&&) noexcept = default;
+Player& Player::operator=(Player&&) noexcept = default;
+Player::~Player() = default;
+
+const Head& Player::head() const { return state_->tables.head; }
+const Tables& Player::tables() const { return state_->tables; }
+std::uint64_t Player::frames() const {
+    return state_->blocks.empty() ? 0 : state_->blocks.back().first_frame + state_->blocks.back().frames;
+}
+const std::string& Player::path() const { return state_->file.path(); }
+bool Player::complete() const { return state_->complete; }
+const std::string& Player::lost() const { return state_->lost; }
+std::uint64_t Player::file_bytes() const { return state_->file.size(); }
+std::uint64_t Player::good_bytes() const { return state_->good_bytes; }
+
+Result<Player> Player::open(const std::string& name) try {
+    Result<InputFile> file = InputFile::open(name);
+    if (!file) {
+        Result<InputFile> unfinished = InputFile::open(name + ".part");
+        if (!unfinished) return file.error();
+        file = std::move(unfinished);
+    }
+    auto state = std::make_unique<State>(std::move(*file));
+    if (Result<void> walked = state->walk(); !walked) return walked.error();
+    state->bytes = {};
+    return Player(std::move(state));
+} catch (const std::bad_alloc&) {
+    return no_memory(name);
+}
+
+Result<void> Player::read(std::uint64_t number, Frame& frame) try {
+    State& state = *state_;
+    const auto after = std::upper_bound(state.blocks.begin(), state.blocks.end(), number,
+                                        [](std::uint64_t n, const Block& block) { return n < block.first_frame; });
+    if (after == state.blocks.begin() || number >= frames()) {
+        return Error{Status::OutOfRange, path(), "found frame " + std::to_string(number) + ", need one below " +
+                     std::to_string(frames()), {}};
+    }
+    const Block& block = *std::prev(after);
+    const auto wanted = static_cast<std::uint32_t>(number - block.first_frame);
+    if (state.reader && state.reader_block == block.offset && state.reader->at() > wanted) state.reader.reset();
+    if (Result<void> loaded = state.load(block); !loaded) return loaded;
+    while (state.reader->at() <= wanted) {
+        const Result<void> read = state.reader->next(frame, state.reader->at() == wanted);
+        if (!read) {
+            Error error = read.error();
+            error.where = state.at(block.offset) + ": " + error.where;
+            state.reader.reset();
+            return error;
+        }
+    }
+    return {};
+} catch (const std::bad_alloc&) {
+    return no_memory(path());
+}
+
+Result<Frame> Player::frame(std::uint64_t number) {
+    Frame frame;
+    if (Result<void> read = this->read(number, frame); !read) return read.error();
+    return frame;
+}
+
+}  // namespace fase::record

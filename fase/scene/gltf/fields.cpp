@@ -1,0 +1,138 @@
+/// Checks each value where it stands in the file.
+#include "fase/scene/gltf/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace fase::scene::gltf {
+
+void refuse(JsonValue at, std::string problem, std::string remedy) {
+    const std::string pointer = at.pointer();
+    throw Refusal{{Status::Format, pointer.empty() ? "/" : pointer, std::move(problem), std::move(remedy)}};
+}
+
+void refuse_file(std::string where, std::string problem, std::string remedy) {
+    throw Refusal{{Status::Format, std::move(where), std::move(problem), std::move(remedy)}};
+}
+
+namespace {
+
+[[noreturn]] void refuse_kind(JsonValue at, std::string_view need) { refuse(at, fmt::format("found {}, need {}", name_of(at.kind()), need)); }
+
+double checked_number(JsonValue value) {
+    if (!value.is(JsonKind::Number)) refuse_kind(value, "a number");
+    if (!(std::abs(value.number()) <= 1e30)) refuse(value, fmt::format("found {}, need a number within 1e30", value.number()));
+    return value.number();
+}
+
+std::uint64_t checked_whole(JsonValue value, std::uint64_t most) {
+    if (!value.is(JsonKind::Number)) refuse_kind(value, "a whole number");
+    const double number = value.number();
+    if (!(number >= 0 && number <= static_cast<double>(most) && number == std::floor(number))) {
+        refuse(value, fmt::format("found {}, need a whole number from 0 to {}", number, most));
+    }
+    return static_cast<std::uint64_t>(number);
+}
+
+}  // namespace
+
+std::optional<JsonValue> member(JsonValue object, std::string_view key, JsonKind kind) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (value && !value->is(kind)) refuse_kind(*value, name_of(kind));
+    return value;
+}
+
+JsonValue needed(JsonValue object, std::string_view key, JsonKind kind) {
+    const std::optional<JsonValue> value = member(object, key, kind);
+    if (!value) refuse(object, fmt::format("found no \"{}\", need {}", key, name_of(kind)));
+    return *value;
+}
+
+std::optional<JsonValue> extension(JsonValue object, std::string_view name) {
+    const std::optional<JsonValue> all = member(object, "extensions", JsonKind::Object);
+    return all ? member(*all, name, JsonKind::Object) : std::nullopt;
+}
+
+std::optional<double> optional_number(JsonValue object, std::string_view key) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value) return std::nullopt;
+    return checked_number(*value);
+}
+
+double number_in(JsonValue object, std::string_view key, double otherwise) { return optional_number(object, key).value_or(otherwise); }
+
+bool flag_in(JsonValue object, std::string_view key, bool otherwise) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value) return otherwise;
+    if (!value->is(JsonKind::True) && !value->is(JsonKind::False)) refuse_kind(*value, "true or false");
+    return value->is(JsonKind::True);
+}
+
+std::optional<std::string_view> text_in(JsonValue object, std::string_view key) {
+    const std::optional<JsonValue> value = member(object, key, JsonKind::String);
+    if (!value) return std::nullopt;
+    return value->string();
+}
+
+std::optional<std::uint64_t> whole_in(JsonValue object, std::string_view key, std::uint64_t most) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value) return std::nullopt;
+    return checked_whole(*value, most);
+}
+
+std::uint32_t index_of(JsonValue value, std::size_t count, std::string_view what) {
+    const std::uint64_t index = checked_whole(value, 1ull << 53);
+    if (index >= count) refuse(value, fmt::format("found index {}, need one below {}, the number of {}", index, count, what));
+    return static_cast<std::uint32_t>(index);
+}
+
+std::optional<std::uint32_t> index_in(JsonValue object, std::string_view key, std::size_t count, std::string_view what) {
+    const std::optional<JsonValue> value = object.find(key);
+    if (!value || (value->is(JsonKind::Number) && value->number() == -1)) return std::nullopt;
+    return index_of(*value, count, what);
+}
+
+bool numbers_in(JsonValue object, std::string_view key, std::span<double> out) {
+    const std::optional<JsonValue> array = member(object, key, JsonKind::Array);
+    if (!array) return false;
+    if (array->size() != out.size()) refuse(*array, fmt::format("found {} elements, need {}", array->size(), out.size()));
+    std::size_t i = 0;
+    array->for_each_element([&](JsonValue value) { out[i++] = checked_number(value); });
+    return true;
+}
+
+std::optional<Vec3d> vec3_in(JsonValue object, std::string_view key) {
+    double v[3];
+    if (!numbers_in(object, key, v)) return std::nullopt;
+    return Vec3d{v[0], v[1], v[2]};
+}
+
+std::optional<Quatd> rotation_in(JsonValue object, std::string_view key) {
+    double v[4];
+    if (!numbers_in(object, key, v)) return std::nullopt;
+    const Quatd q{v[0], v[1], v[2], v[3]};
+    const double squared = length_squared(q);
+    if (!(std::abs(std::sqrt(squared) - 1) <= 1e-2)) {
+        refuse(*object.find(key), fmt::format("found a quaternion of length {:.4g}, need length 1", std::sqrt(squared)));
+    }
+    return std::abs(squared - 1) <= 1e-6 ? q : normalized(q);
+}
+
+void Notes::unknown_members(JsonValue object, std::string_view name, std::initializer_list<std::string_view> known) {
+    object.for_each_member([&](std::string_view key, JsonValue) {
+        const bool always = key == "extras" || key == "extensions" || key == "name";
+        if (always || std::find(known.begin(), known.end(), key) != known.end()) return;
+        add(fmt::format("{} {} is not understood", name, quoted_short(key)));
+    });
+}
+
+std::vector<std::string> Notes::texts() const {
+    std::vector<std::string> all;
+    for (const auto& [text, count] : counts_) all.push_back(count == 1 ? text : fmt::format("{} ({} times)", text, count));
+    return all;
+}
+
+}  // namespace fase::scene::gltf

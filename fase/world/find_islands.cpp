@@ -1,0 +1,74 @@
+/// Stage "islands": wakes what is touched, and joins bodies that touch.
+#include <algorithm>
+
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using dynamics::BodyTraits;
+using dynamics::Contact;
+using dynamics::Population;
+
+namespace {
+
+bool is_moving(const dynamics::BodyMotion& motion) {
+    return length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
+}
+
+/// Whether the bodies meet in this step: they touch, or come as fast as their gap is wide.
+bool meets(const WorldState& state, const Contact& c, float seconds) {
+    const float gap = c.nearest;
+    if (gap <= state.settings.linear_slop) return true;
+    const dynamics::BodyMotion& a = state.bodies.motion[c.body_a];
+    const dynamics::BodyMotion& b = state.bodies.motion[c.body_b];
+    const Vec3 relative = a.linear_velocity + cross(a.angular_velocity, c.offset_a) - b.linear_velocity -
+                          cross(b.angular_velocity, c.offset_b);
+    return dot(relative, c.normal) * seconds >= gap;
+}
+
+}  // namespace
+
+void find_islands(WorldState& state, float seconds) {
+    for (const std::uint32_t index : state.touching) {
+        const Contact& c = state.contacts[index];
+        const BodyTraits& a = state.bodies.traits[c.body_a];
+        const BodyTraits& b = state.bodies.traits[c.body_b];
+        if (a.population == b.population || !meets(state, c, seconds)) continue;
+        // Only a body that can push wakes: a kinematic one that moves, or a dynamic one.
+        if (a.kind != BodyKind::Static && b.kind == BodyKind::Dynamic && b.population == Population::Asleep)
+            want_awake(state, c.body_b);
+        if (b.kind != BodyKind::Static && a.kind == BodyKind::Dynamic && a.population == Population::Asleep)
+            want_awake(state, c.body_a);
+    }
+    if (!state.wake_wanted.empty()) {
+        wake_wanted_islands(state);
+        // The woken bring the contacts they rested on: still true, nothing moved meanwhile.
+        state.touching.clear();
+        for (const std::uint32_t index : state.active.contacts)
+            if (state.contacts[index].count > 0 && !state.contacts[index].sensor) state.touching.push_back(index);
+    }
+
+    state.sets.reset(state.bodies.traits.size());
+    for (const std::uint32_t index : state.touching) {
+        const Contact& c = state.contacts[index];
+        const BodyTraits& a = state.bodies.traits[c.body_a];
+        const BodyTraits& b = state.bodies.traits[c.body_b];
+        const bool both = a.kind == BodyKind::Dynamic && b.kind == BodyKind::Dynamic;
+        const bool touches = c.touching || c.nearest <= state.settings.linear_slop;
+        if (!touches) continue;
+        if (both && a.population == Population::Awake && b.population == Population::Awake) {
+            state.sets.unite(c.body_a, c.body_b);
+        } else if (a.kind == BodyKind::Kinematic && is_moving(state.bodies.motion[c.body_a])) {
+            state.bodies.motion[c.body_b].sleep_time = 0;
+        } else if (b.kind == BodyKind::Kinematic && is_moving(state.bodies.motion[c.body_b])) {
+            state.bodies.motion[c.body_a].sleep_time = 0;
+        }
+    }
+    for (const std::uint32_t body : state.awake) {
+        const std::uint32_t island = state.sets.find(body);
+        state.bodies.motion[body].island = island;
+        state.report.islands += island == body ? 1 : 0;
+    }
+}
+
+}  // namespace fase

@@ -1,0 +1,186 @@
+/// Bodies between awake and asleep: with their boxes, and the pairs they are in.
+#include <algorithm>
+
+#include "fase/geometry/bounds.hpp"
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using dynamics::no_index;
+using dynamics::Population;
+
+broad::AnyStructure& boxes_of(WorldState& state, Population population) {
+    switch (population) {
+        case Population::Static: return state.static_boxes;
+        case Population::Asleep: return state.asleep_boxes;
+        case Population::Awake: break;
+    }
+    return state.awake_boxes;
+}
+
+LocalPose collider_pose(const WorldState& state, const Collider& collider) {
+    const Quat body = state.bodies.motion[collider.body].rotation;
+    return {rotate(body, collider.in_principal.position), body * collider.in_principal.rotation};
+}
+
+Aabb reaching_box(const WorldState& state, std::uint32_t index, float seconds, float sweep) {
+    const Collider& collider = state.colliders[index];
+    const dynamics::BodyMotion& motion = state.bodies.motion[collider.body];
+    const LocalPose local = collider_pose(state, collider);
+    const Pose pose{motion.position + to_double(local.position), local.rotation};
+    Aabb box = grown(bounds(state.shapes[collider.shape].shape, pose), state.settings.speculative_distance);
+    if (sweep > 0) {
+        const Vec3 way = motion.linear_velocity * seconds, none;
+        box.lo += min(way, none);
+        box.hi += max(way, none);
+    }
+    return box;
+}
+
+namespace {
+
+/// Moves the boxes of a body's colliders from one set to another.
+void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, Population from, Population to) {
+    state.askers.clear();
+    state.scratch.clear();
+    for (const std::uint32_t body : bodies)
+        for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
+            state.askers.push_back({c, state.boxes[c]});
+            state.scratch.push_back(c);
+        }
+    boxes_of(state, from).erase(state.scratch);
+    boxes_of(state, to).insert(state.askers);
+}
+
+bool is_awake(const WorldState& state, std::uint32_t contact) {
+    const dynamics::Contact& c = state.contacts[contact];
+    return state.bodies.traits[c.body_a].population == Population::Awake ||
+           state.bodies.traits[c.body_b].population == Population::Awake;
+}
+
+/// Takes the pairs for which `goes` holds out of `from` and merges them into `into`; both stay sorted.
+template <class F>
+void move_pairs(PairList& from, PairList& into, const F& goes) {
+    PairList stay, moved;
+    for (std::size_t i = 0; i < from.size(); ++i)
+        (goes(from.contacts[i]) ? moved : stay).add(from.pairs[i], from.contacts[i]);
+    if (moved.size() == 0) return;
+    PairList all;
+    all.pairs.reserve(into.size() + moved.size());
+    all.contacts.reserve(into.size() + moved.size());
+    std::size_t i = 0, j = 0;
+    while (i < into.size() || j < moved.size()) {
+        if (j == moved.size() || (i < into.size() && into.pairs[i] < moved.pairs[j])) {
+            all.add(into.pairs[i], into.contacts[i]);
+            ++i;
+        } else {
+            all.add(moved.pairs[j], moved.contacts[j]);
+            ++j;
+        }
+    }
+    from = std::move(stay);
+    into = std::move(all);
+}
+
+void move_indices(std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& into,
+                  std::span<const std::uint32_t> bodies) {
+    std::vector<std::uint32_t> stay, all;
+    std::set_difference(from.begin(), from.end(), bodies.begin(), bodies.end(), std::back_inserter(stay));
+    std::merge(into.begin(), into.end(), bodies.begin(), bodies.end(), std::back_inserter(all));
+    from = std::move(stay);
+    into = std::move(all);
+}
+
+}  // namespace
+
+void sort_out_pairs(WorldState& state) {
+    move_pairs(state.resting, state.active, [&](std::uint32_t contact) { return is_awake(state, contact); });
+    move_pairs(state.active, state.resting, [&](std::uint32_t contact) { return !is_awake(state, contact); });
+}
+
+void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
+    if (bodies.empty()) return;
+    for (const std::uint32_t body : bodies) {
+        state.bodies.traits[body].population = Population::Awake;
+        state.bodies.motion[body].sleep_time = 0;
+    }
+    move_indices(state.asleep, state.awake, bodies);
+    move_boxes(state, bodies, Population::Asleep, Population::Awake);
+    sort_out_pairs(state);
+}
+
+void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
+    if (bodies.empty()) return;
+    for (const std::uint32_t body : bodies) {
+        state.bodies.traits[body].population = Population::Asleep;
+        state.bodies.motion[body].linear_velocity = {};
+        state.bodies.motion[body].angular_velocity = {};
+    }
+    move_indices(state.awake, state.asleep, bodies);
+    move_boxes(state, bodies, Population::Awake, Population::Asleep);
+    sort_out_pairs(state);
+}
+
+void want_awake(WorldState& state, std::uint32_t body) {
+    if (state.bodies.traits[body].population == Population::Asleep && !state.bodies.traits[body].quarantined)
+        state.wake_wanted.push_back(body);
+}
+
+void wake_wanted_islands(WorldState& state) {
+    if (state.wake_wanted.empty()) return;
+    std::vector<std::uint32_t> islands;
+    for (const std::uint32_t body : state.wake_wanted) {
+        if (body >= state.bodies.traits.size()) continue;
+        const dynamics::BodyTraits& traits = state.bodies.traits[body];
+        if (traits.population != Population::Asleep) continue;
+        const std::uint32_t island = state.bodies.motion[body].island;
+        islands.push_back(island == no_index ? body : island);
+    }
+    state.wake_wanted.clear();
+    std::sort(islands.begin(), islands.end());
+    islands.erase(std::unique(islands.begin(), islands.end()), islands.end());
+    if (islands.empty()) return;
+    std::vector<std::uint32_t> bodies;
+    for (const std::uint32_t body : state.asleep) {
+        if (state.bodies.traits[body].quarantined) continue;
+        const std::uint32_t island = state.bodies.motion[body].island;
+        if (std::binary_search(islands.begin(), islands.end(), island == no_index ? body : island)) bodies.push_back(body);
+    }
+    for (const std::uint32_t body : bodies)
+        if (const auto id = state.body_ids.id_at(body)) state.events.woke_up.push_back(*id);
+    move_to_awake(state, bodies);
+}
+
+std::uint32_t add_contact(WorldState& state, broad::Pair pair) {
+    std::uint32_t index;
+    if (state.free_contacts.empty()) {
+        index = static_cast<std::uint32_t>(state.contacts.size());
+        state.contacts.emplace_back();
+    } else {
+        index = state.free_contacts.back();
+        state.free_contacts.pop_back();
+        state.contacts[index] = {};
+    }
+    dynamics::Contact& contact = state.contacts[index];
+    const Collider& a = state.colliders[pair.a];
+    const Collider& b = state.colliders[pair.b];
+    contact.collider_a = pair.a;
+    contact.collider_b = pair.b;
+    contact.body_a = a.body;
+    contact.body_b = b.body;
+    contact.generation_a = state.collider_ids.slots()[pair.a].generation;
+    contact.generation_b = state.collider_ids.slots()[pair.b].generation;
+    contact.sensor = a.sensor || b.sensor;
+    renew_materials(state, index);
+    return index;
+}
+
+void renew_materials(WorldState& state, std::uint32_t index) {
+    dynamics::Contact& contact = state.contacts[index];
+    const Material& a = state.colliders[contact.collider_a].material;
+    const Material& b = state.colliders[contact.collider_b].material;
+    contact.friction = combined(a.friction, a.friction_combine, b.friction, b.friction_combine);
+    contact.restitution = combined(a.restitution, a.restitution_combine, b.restitution, b.restitution_combine);
+}
+
+}  // namespace fase

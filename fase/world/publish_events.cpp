@@ -1,0 +1,77 @@
+/// Stage "events": what began, ended and hit.
+#include <algorithm>
+#include <tuple>
+
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using dynamics::Contact;
+
+namespace {
+
+ContactEvent ids_of(const WorldState& state, const Contact& c) {
+    return {{c.collider_a, c.generation_a, state.collider_ids.owner()},
+            {c.collider_b, c.generation_b, state.collider_ids.owner()}};
+}
+
+/// Touching begins at the slop and ends beyond twice the slop, so that a resting contact does not flicker.
+bool touches(const WorldState& state, const Contact& c) {
+    if (c.count == 0) return false;
+    if (c.sensor) return c.nearest <= 0;
+    return c.pushes || c.nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
+}
+
+/// The deepest point, in the world, half-way between the bodies.
+Vec3d deepest_point(const WorldState& state, const Contact& c) {
+    int deepest = 0;
+    for (int i = 1; i < c.count; ++i)
+        if (c.impulse[i] > c.impulse[deepest]) deepest = i;
+    const Vec3 offset = c.offset_a + c.tangent * c.x[deepest] + cross(c.normal, c.tangent) * c.y[deepest];
+    return state.bodies.motion[c.body_a].position + to_double(offset);
+}
+
+template <class E, class F>
+void sort_by(std::vector<E>& events, const F& key) {
+    std::sort(events.begin(), events.end(), [&](const E& x, const E& y) { return key(x) < key(y); });
+}
+
+}  // namespace
+
+void publish_events(WorldState& state) {
+    Events& events = state.events;
+    for (const std::uint32_t index : state.active.contacts) {
+        Contact& c = state.contacts[index];
+        const bool now = touches(state, c);
+        if (now != c.touching) {
+            const ContactEvent ids = ids_of(state, c);
+            if (c.sensor) {
+                const SensorEvent event = state.colliders[c.collider_a].sensor ? SensorEvent{ids.a, ids.b}
+                                                                               : SensorEvent{ids.b, ids.a};
+                (now ? events.sensors_begun : events.sensors_ended).push_back(event);
+            } else {
+                (now ? events.contacts_begun : events.contacts_ended).push_back(ids);
+            }
+            c.touching = now;
+        }
+        if (c.pushes && c.approach > state.settings.restitution_threshold) {
+            HitEvent hit{{}, {}, deepest_point(state, c), c.normal, c.approach, 0};
+            const ContactEvent ids = ids_of(state, c);
+            hit.a = ids.a;
+            hit.b = ids.b;
+            for (int i = 0; i < c.count; ++i) hit.impulse += c.impulse[i];
+            events.hits.push_back(hit);
+        }
+        c.pushes = false;
+        c.approach = 0;
+    }
+    const auto pair_key = [](const ContactEvent& e) { return std::tuple{e.a.index, e.b.index, e.a.generation}; };
+    sort_by(events.contacts_ended, pair_key);
+    const auto sensor_key = [](const SensorEvent& e) {
+        return std::tuple{e.sensor.index, e.visitor.index, e.sensor.generation};
+    };
+    sort_by(events.sensors_begun, sensor_key);
+    sort_by(events.sensors_ended, sensor_key);
+}
+
+}  // namespace fase

@@ -1,0 +1,44 @@
+/// Stage "refresh": the boxes of awake bodies follow them.
+#include <algorithm>
+
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using dynamics::no_index;
+
+void refresh_boxes(WorldState& state, float seconds) {
+    wake_wanted_islands(state);
+    state.sweep.resize(state.bodies.traits.size(), 0);
+    parallel_ranges(*state.tasks, state.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = state.awake[i];
+            const dynamics::BodyTraits& traits = state.bodies.traits[body];
+            // A body that moves more than half its inner radius in a step could pass through a thin thing.
+            const float way = length(state.bodies.motion[body].linear_velocity) * seconds;
+            const float sweep = way > 0.5f * traits.inner_radius ? way : 0;
+            state.sweep[body] = sweep;
+            for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
+                const Aabb box = reaching_box(state, c, seconds, sweep);
+                if (contains(state.boxes[c], box) && !(state.changes[c] & edited)) continue;
+                const Vec3 size = extent(box);
+                const float largest = std::max({size.x, size.y, size.z});
+                state.boxes[c] = grown(box, std::min(state.settings.box_margin, 0.25f * largest));
+                state.changes[c] |= moved_box;
+            }
+        }
+    });
+    state.moved.clear();
+    state.askers.clear();
+    for (const std::uint32_t body : state.awake)
+        for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
+            if (state.changes[c] & moved_box) {
+                state.moved.push_back(c);
+                state.askers.push_back({c, state.boxes[c]});
+            }
+    state.awake_boxes.move(state.askers);
+    state.awake_boxes.commit();
+    state.report.boxes_moved = static_cast<std::uint32_t>(state.moved.size());
+}
+
+}  // namespace fase

@@ -1,0 +1,311 @@
+/// Changing bodies and pushing them.
+#include <algorithm>
+
+#include "fase/world/edit.hpp"
+
+namespace fase {
+
+using dynamics::no_index;
+using dynamics::Population;
+
+namespace {
+
+Result<void> check_vector(Vec3 v, const char* where) {
+    if (is_finite(v)) return {};
+    return refused(where, "a number that is not finite", "three finite numbers");
+}
+Error not_dynamic(const char* where) {
+    return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
+}
+void remove_sorted(std::vector<std::uint32_t>& list, std::uint32_t value) {
+    const auto at = std::lower_bound(list.begin(), list.end(), value);
+    if (at != list.end() && *at == value) list.erase(at);
+}
+Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::BodyMotion& motion, Vec3 torque) {
+    const auto free = [&](Vec3 v) {
+        return Vec3{traits.locks & 8 ? 0 : v.x, traits.locks & 16 ? 0 : v.y, traits.locks & 32 ? 0 : v.z};
+    };
+    const Vec3 local = rotate_back(motion.rotation, free(torque));
+    return free(rotate(motion.rotation, multiply(local, traits.inverse_moments)));
+}
+
+}  // namespace
+
+void renew_population(WorldState& state, std::uint32_t body) {
+    dynamics::BodyTraits& traits = state.bodies.traits[body];
+    const dynamics::BodyMotion& motion = state.bodies.motion[body];
+    const bool moves = length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
+    const Population now = traits.kind == BodyKind::Static    ? Population::Static
+                           : traits.kind == BodyKind::Dynamic ? Population::Awake
+                           : moves                            ? Population::Awake
+                                                              : Population::Asleep;
+    if (now == traits.population) return;
+    std::vector<broad::Move> boxes;
+    std::vector<std::uint32_t> proxies;
+    for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
+        boxes.push_back({c, state.boxes[c]});
+        proxies.push_back(c);
+    }
+    boxes_of(state, traits.population).erase(proxies);
+    remove_sorted(state.awake, body);
+    remove_sorted(state.asleep, body);
+    traits.population = now;
+    boxes_of(state, now).insert(boxes);
+    if (now != Population::Static) {
+        auto& list = now == Population::Awake ? state.awake : state.asleep;
+        list.insert(std::lower_bound(list.begin(), list.end(), body), body);
+    }
+    state.bodies.motion[body].island = body;
+    state.bodies.motion[body].sleep_time = 0;
+    sort_out_pairs(state);
+    renew_boxes(state, body);
+}
+
+Result<void> World::set_settings(const Settings& settings) {
+    if (auto checked = check(settings); !checked) return checked;
+    const bool sleep_ended = state_->settings.sleep && !settings.sleep;
+    state_->settings = settings;
+    if (sleep_ended)
+        for (const std::uint32_t body : state_->asleep) want_awake(*state_, body);
+    return {};
+}
+
+Result<void> World::set_pose(BodyId body, const Pose& pose) {
+    if (!contains(body)) return stale_id("World::set_pose");
+    if (auto checked = check_position(pose.position, "World::set_pose: position"); !checked) return checked;
+    const auto rotation = usable(pose.rotation, "World::set_pose: rotation");
+    if (!rotation) return rotation.error();
+    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+    const Pose placed = Pose{pose.position, *rotation} * state_->bodies.traits[body.index].principal;
+    motion.position = placed.position;
+    motion.rotation = normalized(placed.rotation);
+    renew_boxes(*state_, body.index);
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
+    if (!contains(body)) return stale_id("World::set_velocity");
+    if (auto checked = check_vector(linear, "World::set_velocity: linear"); !checked) return checked;
+    if (auto checked = check_vector(angular, "World::set_velocity: angular"); !checked) return checked;
+    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+    if (traits.kind == BodyKind::Static)
+        return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
+    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+    motion.linear_velocity = linear;
+    motion.angular_velocity = angular;
+    motion.sleep_time = 0;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::move_kinematic(BodyId body, const Pose& target, float seconds) {
+    if (!contains(body)) return stale_id("World::move_kinematic");
+    if (state_->bodies.traits[body.index].kind != BodyKind::Kinematic)
+        return refused("World::move_kinematic", "a body that is not kinematic", "a kinematic one");
+    if (!(seconds > 0 && seconds <= 1))
+        return refused("World::move_kinematic: seconds", std::to_string(seconds), "above 0, at most 1");
+    if (auto checked = check_position(target.position, "World::move_kinematic: position"); !checked) return checked;
+    const auto rotation = usable(target.rotation, "World::move_kinematic: rotation");
+    if (!rotation) return rotation.error();
+    const dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+    const Pose placed = Pose{target.position, *rotation} * state_->bodies.traits[body.index].principal;
+    Quat turn = normalized(placed.rotation * conjugate(motion.rotation));
+    if (turn.w < 0) turn = {-turn.x, -turn.y, -turn.z, -turn.w};
+    // The turn q = (axis sin(a/2), cos(a/2)) needs the speed a / seconds; atan(s) = a / 2 by its series in s = tan, halved until small.
+    const float sine = length(turn.vector());
+    float angle = 0;
+    if (sine > 0) {
+        float s = sine, c = turn.w, scale = 2;
+        while (s > 0.2f * c) {  // halve the angle
+            const float half_c = std::sqrt(0.5f * (1 + c));
+            s = s / (2 * half_c);
+            c = half_c;
+            scale *= 2;
+        }
+        const float t = s / c, t2 = t * t;
+        angle = scale * t * (1 - t2 * (1.0f / 3 - t2 * (1.0f / 5 - t2 * (1.0f / 7))));
+    }
+    const Vec3 angular = sine > 0 ? turn.vector() * (angle / (sine * seconds)) : Vec3{};
+    return set_velocity(body, to_float(placed.position - motion.position) * (1 / seconds), angular);
+}
+
+Result<void> World::set_kind(BodyId body, BodyKind kind) {
+    if (!contains(body)) return stale_id("World::set_kind");
+    if (kind > BodyKind::Dynamic) return refused("World::set_kind", "a number that names no kind", "a BodyKind");
+    WorldState& state = *state_;
+    dynamics::BodyTraits& traits = state.bodies.traits[body.index];
+    if (kind == BodyKind::Dynamic)
+        for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
+            if (!state.colliders[c].sensor && std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
+                return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
+    if (traits.kind == kind) return {};
+    traits.kind = kind;
+    if (kind == BodyKind::Static) {
+        state.bodies.motion[body.index].linear_velocity = {};
+        state.bodies.motion[body.index].angular_velocity = {};
+    }
+    renew_mass(state, body.index);
+    renew_population(state, body.index);
+    renew_boxes(state, body.index);
+    return {};
+}
+
+Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& mass) {
+    if (!contains(body)) return stale_id("World::set_mass");
+    if (mass)
+        if (auto checked = check(*mass); !checked) return checked;
+    dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+    traits.mass_given = mass.has_value();
+    if (mass) traits.mass = *mass;
+    renew_mass(*state_, body.index);
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::set_damping(BodyId body, float linear, float angular) {
+    if (!contains(body)) return stale_id("World::set_damping");
+    if (auto r = check_number(linear, 0, "World::set_damping: linear"); !r) return r;
+    if (auto r = check_number(angular, 0, "World::set_damping: angular"); !r) return r;
+    state_->bodies.traits[body.index].linear_damping = linear;
+    state_->bodies.traits[body.index].angular_damping = angular;
+    return {};
+}
+
+Result<void> World::set_gravity_scale(BodyId body, float scale) {
+    if (!contains(body)) return stale_id("World::set_gravity_scale");
+    if (auto r = check_number(scale, -Aabb::infinity, "World::set_gravity_scale"); !r) return r;
+    state_->bodies.traits[body.index].gravity_scale = scale;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::set_locks(BodyId body, AxisLocks locks) {
+    if (!contains(body)) return stale_id("World::set_locks");
+    state_->bodies.traits[body.index].locks = bits_of(locks);
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
+    if (!contains(body)) return stale_id("World::set_can_sleep");
+    state_->bodies.traits[body.index].can_sleep = can_sleep;
+    if (!can_sleep) want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::wake(BodyId body) {
+    if (!contains(body)) return stale_id("World::wake");
+    state_->bodies.motion[body.index].sleep_time = 0;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::set_material(ColliderId collider, const Material& material) {
+    if (!contains(collider)) return stale_id("World::set_material");
+    if (auto checked = check(material); !checked) return checked;
+    state_->colliders[collider.index].material = material;
+    const auto renew = [&](PairList& list) {
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (list.pairs[i].a == collider.index || list.pairs[i].b == collider.index)
+                renew_materials(*state_, list.contacts[i]);
+    };
+    renew(state_->active);
+    renew(state_->resting);
+    want_awake(*state_, state_->colliders[collider.index].body);
+    return {};
+}
+
+Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter& filter) {
+    if (!contains(collider)) return stale_id("World::set_filter");
+    state_->colliders[collider.index].filter = filter;
+    renew_box(*state_, collider.index);
+    want_awake(*state_, state_->colliders[collider.index].body);
+    return {};
+}
+
+Result<void> World::exclude_pair(BodyId a, BodyId b) {
+    if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
+    if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
+    if (!state_->exclusions.add(a.index, b.index)) return {};
+    renew_boxes(*state_, a.index);
+    want_awake(*state_, a.index);
+    want_awake(*state_, b.index);
+    return {};
+}
+
+Result<void> World::include_pair(BodyId a, BodyId b) {
+    if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
+    if (!state_->exclusions.remove(a.index, b.index)) return {};
+    renew_boxes(*state_, a.index);
+    want_awake(*state_, a.index);
+    want_awake(*state_, b.index);
+    return {};
+}
+
+Result<void> World::apply_force(BodyId body, Vec3 newtons) {
+    if (!contains(body)) return stale_id("World::apply_force");
+    return apply_force_at(body, newtons, state_->bodies.motion[body.index].position);
+}
+
+Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
+    if (!contains(body)) return stale_id("World::apply_force");
+    if (auto checked = check_vector(newtons, "World::apply_force: newtons"); !checked) return checked;
+    if (auto checked = check_position(point, "World::apply_force: point"); !checked) return checked;
+    if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_force");
+    const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
+    state_->bodies.forces[body.index].force += newtons;
+    state_->bodies.forces[body.index].torque += cross(arm, newtons);
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
+    if (!contains(body)) return stale_id("World::apply_torque");
+    if (auto checked = check_vector(newton_metres, "World::apply_torque"); !checked) return checked;
+    if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
+    state_->bodies.forces[body.index].torque += newton_metres;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::apply_impulse(BodyId body, Vec3 newton_seconds) {
+    if (!contains(body)) return stale_id("World::apply_impulse");
+    return apply_impulse_at(body, newton_seconds, state_->bodies.motion[body.index].position);
+}
+
+Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d point) {
+    if (!contains(body)) return stale_id("World::apply_impulse");
+    if (auto checked = check_vector(newton_seconds, "World::apply_impulse: newton_seconds"); !checked) return checked;
+    if (auto checked = check_position(point, "World::apply_impulse: point"); !checked) return checked;
+    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+    if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_impulse");
+    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+    const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
+    const Vec3 angular = motion.angular_velocity +
+                         inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
+    if (!is_finite(linear) || !is_finite(angular))
+        return refused("World::apply_impulse", "an impulse that makes the velocity infinite", "a smaller one");
+    motion.linear_velocity = linear;
+    motion.angular_velocity = angular;
+    motion.sleep_time = 0;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds) {
+    if (!contains(body)) return stale_id("World::apply_angular_impulse");
+    if (auto checked = check_vector(newton_metre_seconds, "World::apply_angular_impulse"); !checked) return checked;
+    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+    if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_angular_impulse");
+    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+    const Vec3 angular = motion.angular_velocity + inverse_inertia_times(traits, motion, newton_metre_seconds);
+    if (!is_finite(angular))
+        return refused("World::apply_angular_impulse", "an impulse that makes the velocity infinite", "a smaller one");
+    motion.angular_velocity = angular;
+    motion.sleep_time = 0;
+    want_awake(*state_, body.index);
+    return {};
+}
+
+}  // namespace fase

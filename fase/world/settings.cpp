@@ -1,0 +1,45 @@
+/// Which settings can be meant.
+#include "fase/world/settings.hpp"
+
+#include <cmath>
+
+namespace fase {
+namespace {
+
+Error refused(const char* field, const std::string& found, const std::string& need) {
+    return {Status::BadArgument, std::string("Settings.") + field, "found " + found + ", need " + need, ""};
+}
+
+}  // namespace
+
+Result<void> check(const Settings& s) {
+    if (!is_finite(s.gravity)) return refused("gravity", "a number that is not finite", "three finite numbers");
+    if (!(s.time_step > 0 && s.time_step <= 1)) return refused("time_step", std::to_string(s.time_step), "above 0, at most 1");
+    if (s.sub_steps < 1 || s.sub_steps > 64) return refused("sub_steps", std::to_string(s.sub_steps), "1 to 64");
+    if (s.most_pairs < 0) return refused("most_pairs", std::to_string(s.most_pairs), "0 or more");
+    const struct {
+        const char* field;
+        float value, least, most;
+    } ranges[] = {
+        {"contact_frequency", s.contact_frequency, 0.01f, 1e6f},
+        {"contact_damping_ratio", s.contact_damping_ratio, 0.0f, 1e6f},
+        {"push_out_speed", s.push_out_speed, 0.0f, 1e6f},
+        {"restitution_threshold", s.restitution_threshold, 0.0f, 1e6f},
+        {"speculative_distance", s.speculative_distance, 0.0f, 1e3f},
+        {"linear_slop", s.linear_slop, 0.0f, 1e3f},
+        {"contact_reuse_distance", s.contact_reuse_distance, 0.0f, 1e3f},
+        {"box_margin", s.box_margin, 0.0f, 1e3f},
+        {"sleep_linear_speed", s.sleep_linear_speed, 0.0f, 1e6f},
+        {"sleep_angular_speed", s.sleep_angular_speed, 0.0f, 1e6f},
+        {"time_to_sleep", s.time_to_sleep, 0.0f, 1e6f},
+        {"most_linear_speed", s.most_linear_speed, 1e-3f, 1e6f},
+        {"most_angular_speed", s.most_angular_speed, 1e-3f, 1e5f},
+    };
+    for (const auto& range : ranges)
+        if (!(range.value >= range.least && range.value <= range.most))
+            return refused(range.field, std::to_string(range.value),
+                           std::to_string(range.least) + " to " + std::to_string(range.most));
+    return {};
+}
+
+}  // namespace fase

@@ -1,0 +1,126 @@
+/// Stages "solve" and "finish": the solver moves the awake bodies, and their new state is taken over.
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using dynamics::BodyMotion;
+using dynamics::BodyTraits;
+using dynamics::Population;
+
+namespace {
+
+dynamics::SolverSettings solver_settings(const Settings& settings, float seconds) {
+    return {settings.gravity,
+            seconds,
+            settings.sub_steps,
+            settings.contact_frequency,
+            settings.contact_damping_ratio,
+            settings.push_out_speed,
+            settings.restitution_threshold,
+            {settings.most_linear_speed, settings.most_angular_speed}};
+}
+
+bool is_good(const BodyMotion& motion) {
+    constexpr double farthest = 1e8;
+    const Vec3d p = motion.position;
+    return is_finite(motion.linear_velocity) && is_finite(motion.angular_velocity) && is_finite(motion.rotation) &&
+           p.x > -farthest && p.x < farthest && p.y > -farthest && p.y < farthest && p.z > -farthest && p.z < farthest;
+}
+
+/// Takes a body out of play, at its last good place.
+void quarantine(WorldState& state, std::uint32_t body) {
+    state.bodies.traits[body].quarantined = true;
+    state.bodies.motion[body].linear_velocity = {};
+    state.bodies.motion[body].angular_velocity = {};
+    state.bodies.motion[body].island = body;
+    for (std::uint32_t c = state.bodies.traits[body].first_collider; c != dynamics::no_index;
+         c = state.colliders[c].next) {
+        state.changes[c] |= edited;  // its pairs end in the next step
+        state.edited_colliders.push_back(c);
+    }
+    ++state.report.quarantined;
+}
+
+/// A force that makes a body's velocity infinite must not reach its neighbours: such bodies leave before the solve.
+void quarantine_bad_input(WorldState& state, float seconds) {
+    std::vector<std::uint32_t> bad;
+    for (const std::uint32_t body : state.awake) {
+        const BodyTraits& traits = state.bodies.traits[body];
+        const dynamics::BodyForces& forces = state.bodies.forces[body];
+        const BodyMotion& motion = state.bodies.motion[body];
+        const Vec3 next = motion.linear_velocity + forces.force * (traits.inverse_mass * seconds);
+        const float hardest = std::max({traits.inverse_moments.x, traits.inverse_moments.y, traits.inverse_moments.z});
+        const Vec3 spin = motion.angular_velocity + forces.torque * (hardest * seconds);
+        if (!std::isfinite(length_squared(next)) || !std::isfinite(length_squared(spin))) bad.push_back(body);
+    }
+    if (bad.empty()) return;
+    for (const std::uint32_t body : bad) {
+        state.bodies.forces[body] = {};
+        quarantine(state, body);
+    }
+    std::erase_if(state.touching, [&](std::uint32_t index) {
+        const dynamics::Contact& c = state.contacts[index];
+        return state.bodies.traits[c.body_a].quarantined || state.bodies.traits[c.body_b].quarantined;
+    });
+    move_to_asleep(state, bad);
+}
+
+}  // namespace
+
+void solve(WorldState& state, float seconds) {
+    quarantine_bad_input(state, seconds);
+    // Between an awake body and a sleeping one that it does not meet nothing acts, nor between two that nothing moves.
+    std::erase_if(state.touching, [&](std::uint32_t index) {
+        const dynamics::Contact& c = state.contacts[index];
+        const auto moves = [&](std::uint32_t body) {
+            const BodyTraits& traits = state.bodies.traits[body];
+            return traits.kind == BodyKind::Dynamic && traits.population == Population::Awake;
+        };
+        return !moves(c.body_a) && !moves(c.body_b);
+    });
+    const dynamics::SolverSettings settings = solver_settings(state.settings, seconds);
+    state.solver.load_bodies(state.bodies, state.awake, settings, *state.tasks);
+    state.solver.load_contacts(state.contacts, state.touching, state.bodies, settings, *state.tasks);
+    state.solver.run(settings, *state.tasks);
+    state.solver.store_contacts(state.contacts, *state.tasks);
+    const dynamics::SolverCounts counts = state.solver.counts();
+    state.report.colours = counts.colours;
+    state.report.overflow = counts.overflow;
+    state.report.speed_clamped = counts.clamped;
+}
+
+void finish(WorldState& state, float seconds) {
+    const float linear = state.settings.sleep_linear_speed, angular = state.settings.sleep_angular_speed;
+    state.reused.assign(state.awake.size(), 0);  // marks bodies that went bad
+    parallel_ranges(*state.tasks, state.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = state.awake[i];
+            const BodyTraits& traits = state.bodies.traits[body];
+            const dynamics::SolverBody& row = state.solver.body(i);
+            BodyMotion next = state.bodies.motion[body];
+            next.position += Vec3d{row.moved[0], row.moved[1], row.moved[2]};
+            const Quat turned{row.turned[0], row.turned[1], row.turned[2], row.turned[3]};
+            if (!(turned == Quat{})) next.rotation = normalized(turned * next.rotation);
+            next.linear_velocity = {row.velocity[0], row.velocity[1], row.velocity[2]};
+            next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};
+            state.bodies.forces[body] = {};
+            if (!is_good(next)) {
+                state.reused[i] = 1;
+                continue;
+            }
+            const bool slow = length_squared(next.linear_velocity) < linear * linear &&
+                              length_squared(next.angular_velocity) < angular * angular;
+            const bool still = length_squared(next.linear_velocity) == 0 && length_squared(next.angular_velocity) == 0;
+            const bool rests = traits.kind == BodyKind::Dynamic ? slow && traits.can_sleep : still;
+            next.sleep_time = rests ? next.sleep_time + seconds : 0;
+            state.bodies.motion[body] = next;
+        }
+    });
+    std::vector<std::uint32_t> bad;
+    for (std::size_t i = 0; i < state.awake.size(); ++i)
+        if (state.reused[i] != 0) bad.push_back(state.awake[i]);
+    for (const std::uint32_t body : bad) quarantine(state, body);
+    move_to_asleep(state, bad);
+}
+
+}  // namespace fase

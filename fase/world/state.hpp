@@ -1,0 +1,153 @@
+#pragma once
+/// Everything a world holds, as flat arrays, and the stages of its step.
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "fase/broad/any_structure.hpp"
+#include "fase/core/ids.hpp"
+#include "fase/core/tasks.hpp"
+#include "fase/dynamics/bodies.hpp"
+#include "fase/dynamics/contact.hpp"
+#include "fase/dynamics/islands.hpp"
+#include "fase/dynamics/solver.hpp"
+#include "fase/pairs/filter.hpp"
+#include "fase/pairs/sort_pairs.hpp"
+#include "fase/world/body.hpp"
+#include "fase/world/events.hpp"
+#include "fase/world/settings.hpp"
+#include "fase/world/stats.hpp"
+
+namespace fase {
+
+/// One shape on a body, as the step reads it.
+struct Collider {
+    std::uint32_t body = dynamics::no_index;
+    std::uint32_t next = dynamics::no_index;  ///< the body's next collider
+    std::uint32_t shape = 0;                  ///< index of WorldState::shapes
+    bool sensor = false;
+    bool unused[3] = {};
+    LocalPose in_principal;                   ///< of the shape in the frame of centre of mass and principal axes
+    LocalPose in_body;
+    Material material;
+    float density = 0;
+    std::uint16_t unused_tail[2] = {};
+    pairs::CollisionFilter filter;
+    std::uint64_t user = 0;
+};
+
+/// A shape shared by all colliders that have an equal one.
+struct SharedShape {
+    Shape shape;
+    std::uint32_t users = 0;
+    float outer_radius = 0, inner_radius = 0;
+    std::uint64_t key = 0;  ///< hash of the content
+};
+
+/// Pairs of colliders whose grown boxes overlap, sorted, each with the index of its contact.
+struct PairList {
+    std::vector<broad::Pair> pairs;
+    std::vector<std::uint32_t> contacts;
+    [[nodiscard]] std::size_t size() const { return pairs.size(); }
+    void clear() {
+        pairs.clear();
+        contacts.clear();
+    }
+    void add(broad::Pair pair, std::uint32_t contact) {
+        pairs.push_back(pair);
+        contacts.push_back(contact);
+    }
+};
+
+/// What happened to a collider's box since the last step.
+enum ColliderChange : std::uint8_t {
+    moved_box = 1,  ///< it left its grown box
+    edited = 2,     ///< the user made, moved or changed it
+};
+
+struct WorldState {
+    Settings settings;
+    std::uint64_t steps = 0;
+    double time = 0;
+
+    IdPool<BodyTag> body_ids;
+    dynamics::Bodies bodies;
+    IdPool<ColliderTag> collider_ids;
+    std::vector<Collider> colliders;
+    std::vector<Aabb> boxes;             ///< grown, by collider
+    std::vector<std::uint8_t> changes;   ///< ColliderChange bits, by collider
+    std::vector<SharedShape> shapes;
+    std::vector<std::uint32_t> free_shapes;
+    pairs::PairExclusions exclusions;
+
+    std::vector<std::uint32_t> awake;    ///< body indices, ascending: dynamic ones and moving kinematic ones
+    std::vector<std::uint32_t> asleep;   ///< body indices, ascending
+    PairList active;                     ///< an awake body in each
+    PairList resting;                    ///< none
+    std::vector<dynamics::Contact> contacts;
+    std::vector<std::uint32_t> free_contacts;
+    std::vector<std::uint32_t> edited_colliders;  ///< to ask for pairs in the next step
+    std::vector<std::uint32_t> wake_wanted;       ///< bodies to wake before the next pairs
+    bool removed_any = false;                     ///< pairs of removed colliders may be in the lists
+    bool ask_all = false;                         ///< pairs were dropped: every awake box asks again
+
+    Events events;
+    StepReport report;
+
+    // What follows is made anew when needed: no part of hash or snapshot.
+    std::unique_ptr<TaskRunner> own_tasks;
+    TaskRunner* tasks = nullptr;
+    std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
+    broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
+    dynamics::Solver solver;
+    dynamics::DisjointSets sets;
+    pairs::PairSorter sorter;
+    std::vector<float> sweep;                 ///< by body: metres a fast body may move in this step, else 0
+    std::vector<broad::Move> askers;
+    std::vector<broad::Pair> candidates;
+    std::vector<std::uint32_t> moved;         ///< colliders whose box left its grown box in this step
+    std::vector<std::uint32_t> touching;      ///< contacts to solve in this step
+    std::vector<std::uint8_t> reused;         ///< by active pair: the manifold was kept
+    std::vector<std::uint32_t> scratch;
+    std::vector<float> least_sleep;
+    bool stepping = false;
+};
+
+/// The broad-phase set in which a population's boxes stand.
+[[nodiscard]] broad::AnyStructure& boxes_of(WorldState& state, dynamics::Population population);
+
+// Lists and populations (world/populations.cpp).
+/// The pose of a collider's shape: rotation in the world, and its place relative to the body's centre of mass.
+[[nodiscard]] LocalPose collider_pose(const WorldState& state, const Collider& collider);
+/// World box of a collider as it stands, grown by the speculative distance and by `sweep` along the body's velocity.
+[[nodiscard]] Aabb reaching_box(const WorldState& state, std::uint32_t collider, float seconds, float sweep);
+/// Puts bodies from asleep to awake or back, with their boxes and pairs. `bodies` ascending.
+void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies);
+void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies);
+/// Pairs go to the list where they belong: active when a body of theirs is awake.
+void sort_out_pairs(WorldState& state);
+/// Asks that the body's island be awake before pairs are sought in the next step.
+void want_awake(WorldState& state, std::uint32_t body);
+/// Wakes the islands of all wanted bodies.
+void wake_wanted_islands(WorldState& state);
+/// A free contact for a pair.
+[[nodiscard]] std::uint32_t add_contact(WorldState& state, broad::Pair pair);
+
+/// Friction and restitution of a contact from the materials of its colliders.
+void renew_materials(WorldState& state, std::uint32_t contact);
+
+// The stages of a step, in order; each can be called alone by a test.
+void refresh_boxes(WorldState& state, float seconds);
+void track_pairs(WorldState& state);
+void collide(WorldState& state, float seconds);
+void find_islands(WorldState& state, float seconds);
+void solve(WorldState& state, float seconds);
+void finish(WorldState& state, float seconds);
+void publish_events(WorldState& state);
+void fall_asleep(WorldState& state, float seconds);
+
+/// One whole step: world/step.cpp.
+void step(WorldState& state, float seconds);
+
+}  // namespace fase

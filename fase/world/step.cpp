@@ -1,0 +1,57 @@
+/// One step, on one screen.
+#include <chrono>
+
+#include "fase/core/float_mode.hpp"
+#include "fase/world/state.hpp"
+
+namespace fase {
+namespace {
+
+/// Runs a stage and notes its time under its name.
+template <class F>
+void timed(WorldState& state, Stage stage, const F& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+    state.report.ms[static_cast<std::size_t>(stage)] += taken.count();
+    state.report.total_ms += taken.count();
+}
+
+std::uint64_t bytes_held(const WorldState& s) {
+    const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    return of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
+           of(s.contacts) + of(s.active.pairs) + of(s.active.contacts) + of(s.resting.pairs) + of(s.resting.contacts) +
+           of(s.candidates) + of(s.askers) + s.static_boxes.bytes() + s.asleep_boxes.bytes() + s.awake_boxes.bytes() +
+           s.solver.bytes();
+}
+
+}  // namespace
+
+void step(WorldState& state, float seconds) {
+    const StandardFloats floats;
+    state.report = {};
+    state.events.clear();
+
+    timed(state, Stage::Refresh, [&] { refresh_boxes(state, seconds); });
+    timed(state, Stage::Pairs, [&] { track_pairs(state); });
+    timed(state, Stage::Collide, [&] { collide(state, seconds); });
+    timed(state, Stage::Islands, [&] { find_islands(state, seconds); });
+    if (seconds > 0) {
+        timed(state, Stage::Solve, [&] { solve(state, seconds); });
+        timed(state, Stage::Finish, [&] { finish(state, seconds); });
+    }
+    timed(state, Stage::Events, [&] { publish_events(state); });
+    if (seconds > 0) timed(state, Stage::Sleep, [&] { fall_asleep(state, seconds); });
+
+    ++state.steps;
+    state.time += static_cast<double>(seconds);
+    state.report.step = state.steps;
+    state.report.bodies = state.body_ids.count();
+    state.report.awake = static_cast<std::uint32_t>(state.awake.size());
+    state.report.asleep = static_cast<std::uint32_t>(state.asleep.size());
+    state.report.pairs = static_cast<std::uint32_t>(state.active.size());
+    state.report.structure = state.awake_boxes.info().name;
+    state.report.bytes = bytes_held(state);
+}
+
+}  // namespace fase

@@ -1,0 +1,185 @@
+/// Stage "pairs": which grown boxes overlap, and what began and ended with it.
+#include <algorithm>
+
+#include "fase/world/state.hpp"
+
+namespace fase {
+
+using broad::Pair;
+using dynamics::no_index;
+using dynamics::Population;
+
+namespace {
+
+bool same_collider(const WorldState& state, std::uint32_t index, std::uint16_t generation) {
+    return state.collider_ids.alive_at(index) && state.collider_ids.slots()[index].generation == generation;
+}
+/// Neither collider was removed since the contact was made (its slot may have a new owner by now).
+bool is_current(const WorldState& state, const dynamics::Contact& c) {
+    return same_collider(state, c.collider_a, c.generation_a) && same_collider(state, c.collider_b, c.generation_b);
+}
+
+/// Whether two colliders are to be told of each other at all.
+bool wanted(const WorldState& state, Pair pair) {
+    const Collider& a = state.colliders[pair.a];
+    const Collider& b = state.colliders[pair.b];
+    if (a.body == b.body || (a.sensor && b.sensor)) return false;
+    const dynamics::BodyTraits& ta = state.bodies.traits[a.body];
+    const dynamics::BodyTraits& tb = state.bodies.traits[b.body];
+    if (ta.quarantined || tb.quarantined) return false;
+    const bool dynamic = ta.kind == BodyKind::Dynamic || tb.kind == BodyKind::Dynamic;
+    const bool kinematic = ta.kind == BodyKind::Kinematic || tb.kind == BodyKind::Kinematic;
+    if (!dynamic && !(kinematic && (a.sensor || b.sensor))) return false;
+    return pairs::may_collide(a.filter, b.filter) && !state.exclusions.contains(a.body, b.body);
+}
+
+void end_contact(WorldState& state, std::uint32_t index) {
+    dynamics::Contact& c = state.contacts[index];
+    if (c.touching) {
+        const ContactEvent event{{c.collider_a, c.generation_a, state.collider_ids.owner()},
+                                 {c.collider_b, c.generation_b, state.collider_ids.owner()}};
+        if (c.sensor) {
+            const bool a_is_sensor = same_collider(state, c.collider_a, c.generation_a)
+                                         ? state.colliders[c.collider_a].sensor
+                                         : !state.colliders[c.collider_b].sensor;
+            state.events.sensors_ended.push_back(a_is_sensor ? SensorEvent{event.a, event.b}
+                                                             : SensorEvent{event.b, event.a});
+        } else {
+            state.events.contacts_ended.push_back(event);
+        }
+    }
+    c = {};
+    state.free_contacts.push_back(index);
+}
+
+/// What rested on something that was removed, moved or changed must not stay asleep.
+void wake_around_edits(WorldState& state) {
+    for (const std::uint32_t contact : state.resting.contacts) {
+        const dynamics::Contact& c = state.contacts[contact];
+        const bool changed = !is_current(state, c) || ((state.changes[c.collider_a] | state.changes[c.collider_b]) & edited);
+        if (!changed || c.sensor || c.count == 0) continue;
+        for (const auto& [collider, generation, body] :
+             {std::tuple{c.collider_a, c.generation_a, c.body_a}, std::tuple{c.collider_b, c.generation_b, c.body_b}})
+            if (same_collider(state, collider, generation)) want_awake(state, body);
+    }
+    wake_wanted_islands(state);
+    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes}) boxes->commit();
+}
+
+/// All colliders that ask: those that moved, and those that the user made or changed.
+void gather_askers(WorldState& state) {
+    state.askers.clear();
+    if (state.ask_all) {
+        for (const std::uint32_t body : state.awake)
+            for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
+                if (!(state.changes[c] & (moved_box | edited))) {
+                    state.changes[c] |= moved_box;
+                    state.moved.push_back(c);
+                }
+    }
+    for (const std::uint32_t c : state.moved)
+        if (!(state.changes[c] & edited)) state.askers.push_back({c, state.boxes[c]});
+    for (const std::uint32_t c : state.edited_colliders)
+        if (state.collider_ids.alive_at(c) && (state.changes[c] & edited)) state.askers.push_back({c, state.boxes[c]});
+    std::sort(state.askers.begin(), state.askers.end(),
+              [](const broad::Move& a, const broad::Move& b) { return a.proxy < b.proxy; });
+    state.askers.erase(std::unique(state.askers.begin(), state.askers.end(),
+                                   [](const broad::Move& a, const broad::Move& b) { return a.proxy == b.proxy; }),
+                       state.askers.end());
+}
+
+/// Candidates of the askers in all three sets, sorted, each once. With a limit, asks in portions and stops when it is reached:
+/// those with the largest numbers go without.
+void find_candidates(WorldState& state) {
+    state.candidates.clear();
+    const auto limit = static_cast<std::size_t>(state.settings.most_pairs);
+    const std::size_t portion = limit == 0 ? state.askers.size() : 64;
+    state.ask_all = false;
+    for (std::size_t begin = 0; begin < state.askers.size(); begin += portion) {
+        if (limit != 0 && state.candidates.size() > limit) {
+            state.ask_all = true;
+            state.report.pairs_dropped += static_cast<std::uint32_t>(state.askers.size() - begin);
+            break;
+        }
+        const auto askers = std::span<const broad::Move>(state.askers).subspan(
+            begin, std::min(portion, state.askers.size() - begin));
+        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes})
+            if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, askers, state.changes, state.candidates);
+    }
+    state.report.candidates = state.candidates.size();
+    std::erase_if(state.candidates, [&](Pair pair) { return !wanted(state, pair); });
+    state.sorter.sort(state.candidates);
+    state.candidates.erase(std::unique(state.candidates.begin(), state.candidates.end()), state.candidates.end());
+}
+
+/// Merges new pairs into a list and ends those that no longer overlap or that somebody removed.
+void update_list(WorldState& state, PairList& list, std::span<const Pair> found) {
+    PairList next;
+    next.pairs.reserve(list.size() + found.size());
+    next.contacts.reserve(list.size() + found.size());
+    std::size_t i = 0, j = 0;
+    while (i < list.size() || j < found.size()) {
+        if (j == found.size() || (i < list.size() && list.pairs[i] <= found[j])) {
+            const Pair pair = list.pairs[i];
+            const std::uint32_t index = list.contacts[i++];
+            dynamics::Contact& c = state.contacts[index];
+            const bool current = is_current(state, c);
+            const std::uint8_t change = current ? state.changes[pair.a] | state.changes[pair.b] : 0;
+            if (!current || (change != 0 && !overlaps(state.boxes[pair.a], state.boxes[pair.b])) ||
+                ((change & edited) && !wanted(state, pair))) {
+                end_contact(state, index);
+                continue;  // a found pair with the same key is a new one
+            }
+            if (change & edited) c.frozen = false;
+            if (j < found.size() && found[j] == pair) ++j;
+            next.add(pair, index);
+        } else {
+            const std::uint32_t index = add_contact(state, found[j]);
+            next.add(found[j++], index);
+        }
+    }
+    list = std::move(next);
+}
+
+}  // namespace
+
+void track_pairs(WorldState& state) {
+    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) boxes->commit();
+    const bool edits = state.removed_any || !state.edited_colliders.empty();
+    if (edits) wake_around_edits(state);
+    gather_askers(state);
+    if (!state.askers.empty() || edits) {
+        find_candidates(state);
+        // A new or moved obstacle wakes what it meets.
+        for (const Pair pair : state.candidates)
+            for (const std::uint32_t collider : {pair.a, pair.b}) {
+                const std::uint32_t other = collider == pair.a ? pair.b : pair.a;
+                if ((state.changes[collider] & edited) && !state.colliders[collider].sensor)
+                    want_awake(state, state.colliders[other].body);
+            }
+        wake_wanted_islands(state);
+        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes}) boxes->commit();
+        const auto awake_pair = [&](Pair pair) {
+            return state.bodies.traits[state.colliders[pair.a].body].population == Population::Awake ||
+                   state.bodies.traits[state.colliders[pair.b].body].population == Population::Awake;
+        };
+        const auto middle = std::stable_partition(state.candidates.begin(), state.candidates.end(), awake_pair);
+        const auto active = static_cast<std::size_t>(middle - state.candidates.begin());
+        std::size_t room = active;
+        if (const auto limit = static_cast<std::size_t>(state.settings.most_pairs); limit != 0) {
+            room = std::min(active, limit > state.active.size() ? limit - state.active.size() : 0);
+            state.report.pairs_dropped += static_cast<std::uint32_t>(active - room);
+            state.ask_all = state.ask_all || room < active;
+        }
+        update_list(state, state.active, std::span<const Pair>(state.candidates).first(room));
+        if (edits || active < state.candidates.size())
+            update_list(state, state.resting, std::span<const Pair>(state.candidates).subspan(active));
+    }
+    for (const std::uint32_t c : state.moved) state.changes[c] = 0;
+    for (const std::uint32_t c : state.edited_colliders)
+        if (c < state.changes.size()) state.changes[c] = 0;
+    state.edited_colliders.clear();
+    state.removed_any = false;
+}
+
+}  // namespace fase

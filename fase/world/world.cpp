@@ -1,0 +1,163 @@
+/// The world's surface: making, stepping, reading.
+#include "fase/world/world.hpp"
+
+#include <atomic>
+#include <new>
+
+#include "fase/world/edit.hpp"
+
+namespace fase {
+namespace {
+
+/// Numbers worlds, so that the ids of one are refused by another; wraps after 65,535.
+std::uint16_t next_world_number() {
+    static std::atomic<std::uint32_t> count{0};
+    return static_cast<std::uint16_t>(count.fetch_add(1, std::memory_order_relaxed) % 0xffff + 1);
+}
+
+}  // namespace
+
+World::World(std::unique_ptr<WorldState> state) : state_(std::move(state)) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+Result<World> World::create(const Settings& settings, const Setup& setup) {
+    if (auto checked = check(settings); !checked) return checked.error();
+    if (setup.threads < 0 || setup.threads > 1024)
+        return Error{Status::BadArgument, "Setup.threads", "found " + std::to_string(setup.threads) + ", need 0 to 1024",
+                     "0 takes all cores"};
+    auto structure = broad::AnyStructure::named(setup.structure == "auto" ? "dynamic_bvh" : setup.structure);
+    if (!structure) {
+        Error error = structure.error();
+        error.where = "Setup.structure";
+        return error;
+    }
+    try {
+        auto state = std::make_unique<WorldState>();
+        const std::uint16_t number = next_world_number();
+        state->body_ids = IdPool<BodyTag>(number);
+        state->collider_ids = IdPool<ColliderTag>(number);
+        state->settings = settings;
+        state->static_boxes = state->asleep_boxes = state->awake_boxes = *structure;
+        if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
+        state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();
+        return World(std::move(state));
+    } catch (const std::bad_alloc&) {
+        return Error{Status::NoMemory, "World::create", "no memory for a world", "free some"};
+    }
+}
+
+Result<StepReport> World::step() { return step(state_->settings.time_step); }
+
+Result<StepReport> World::step(float seconds) {
+    if (!(seconds >= 0 && seconds <= 1))
+        return Error{Status::BadArgument, "World::step: seconds",
+                     "found " + std::to_string(seconds) + ", need 0 to 1", "take several steps for longer times"};
+    if (state_->stepping)
+        return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
+    try {
+        state_->stepping = true;
+        fase::step(*state_, seconds);
+        state_->stepping = false;
+        return state_->report;
+    } catch (const std::bad_alloc&) {
+        state_->stepping = false;
+        return Error{Status::NoMemory, "World::step", "no memory for the step", "restore a snapshot, or remove bodies"};
+    }
+}
+
+const StepReport& World::last_report() const { return state_->report; }
+const Events& World::events() const { return state_->events; }
+std::uint64_t World::steps() const { return state_->steps; }
+double World::time() const { return state_->time; }
+const Settings& World::settings() const { return state_->settings; }
+std::size_t World::body_count() const { return state_->body_ids.count(); }
+bool World::contains(BodyId body) const { return state_->body_ids.contains(body); }
+bool World::contains(ColliderId collider) const { return state_->collider_ids.contains(collider); }
+
+namespace {
+
+BodyState state_of(const WorldState& state, BodyId id) {
+    const dynamics::BodyTraits& traits = state.bodies.traits[id.index];
+    const dynamics::BodyMotion& motion = state.bodies.motion[id.index];
+    BodyState out;
+    out.id = id;
+    out.kind = traits.kind;
+    out.awake = traits.population == dynamics::Population::Awake;
+    out.quarantined = traits.quarantined;
+    out.pose = body_pose(traits, motion);
+    out.centre = motion.position;
+    out.linear_velocity = motion.linear_velocity;
+    out.angular_velocity = motion.angular_velocity;
+    out.mass = traits.kind == BodyKind::Dynamic ? traits.mass.mass : 0;
+    out.island = traits.kind == BodyKind::Dynamic ? motion.island : dynamics::no_index;
+    out.user = traits.user;
+    return out;
+}
+
+}  // namespace
+
+Result<BodyState> World::body(BodyId body) const {
+    if (!contains(body)) return stale_id("World::body");
+    return state_of(*state_, body);
+}
+
+Result<ColliderState> World::collider(ColliderId collider) const {
+    if (!contains(collider)) return stale_id("World::collider");
+    const Collider& c = state_->colliders[collider.index];
+    ColliderState out;
+    out.id = collider;
+    out.body = *state_->body_ids.id_at(c.body);
+    out.shape = &state_->shapes[c.shape].shape;
+    out.def = {c.in_body, c.material, c.density, c.filter, c.sensor, c.user};
+    out.box = reaching_box(*state_, collider.index, 0, 0);
+    return out;
+}
+
+std::vector<BodyId> World::bodies() const {
+    std::vector<BodyId> out;
+    out.reserve(body_count());
+    for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
+        if (const auto id = state_->body_ids.id_at(i)) out.push_back(*id);
+    return out;
+}
+
+void World::read_bodies(std::vector<BodyState>& out) const {
+    for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
+        if (const auto id = state_->body_ids.id_at(i)) out.push_back(state_of(*state_, *id));
+}
+
+std::vector<ColliderId> World::colliders_of(BodyId body) const {
+    std::vector<ColliderId> out;
+    if (!contains(body)) return out;
+    for (std::uint32_t c = state_->bodies.traits[body.index].first_collider; c != dynamics::no_index;
+         c = state_->colliders[c].next)
+        out.push_back(*state_->collider_ids.id_at(c));
+    return out;
+}
+
+void World::read_contacts(std::vector<ContactState>& out) const {
+    for (const PairList* list : {&state_->active, &state_->resting})
+        for (const std::uint32_t index : list->contacts) {
+            const dynamics::Contact& c = state_->contacts[index];
+            ContactState contact;
+            contact.a = {c.collider_a, c.generation_a, state_->collider_ids.owner()};
+            contact.b = {c.collider_b, c.generation_b, state_->collider_ids.owner()};
+            if (c.count == 0 || !contains(contact.a) || !contains(contact.b)) continue;
+            contact.normal = c.normal;
+            contact.count = c.count;
+            contact.sensor = c.sensor;
+            const Vec3 second = cross(c.normal, c.tangent);
+            for (std::size_t i = 0; i < c.count; ++i) {
+                contact.points[i] = state_->bodies.motion[c.body_a].position +
+                                    to_double(c.offset_a + c.tangent * c.x[i] + second * c.y[i]);
+                contact.separations[i] = c.separation[i];
+                contact.impulses[i] = c.impulse[i];
+                contact.features[i] = c.feature[i];
+            }
+            out.push_back(contact);
+        }
+}
+
+}  // namespace fase

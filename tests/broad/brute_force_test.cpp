@@ -1,0 +1,56 @@
+#include "fase/broad/brute_force.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fase/core/random.hpp"
+
+namespace fase::broad {
+namespace {
+
+TEST(BruteForce, CountsTouchingAsOverlapping) {
+    BruteForce boxes;
+    boxes.insert(4, {{0, 0, 0}, {1, 1, 1}});
+    boxes.insert(2, {{1, 1, 1}, {2, 2, 2}});
+    boxes.insert(9, {{std::nextafter(1.0f, 2.0f), 0, 0}, {3, 1, 1}});
+    std::vector<Pair> pairs;
+    boxes.find_pairs(pairs);
+    std::sort(pairs.begin(), pairs.end());
+    EXPECT_EQ(pairs, (std::vector<Pair>{{2, 4}, {2, 9}}));
+}
+
+TEST(BruteForce, LetsNothingTouchABoxWithoutANumber) {
+    BruteForce boxes;
+    const float nan = std::nanf("");
+    boxes.insert(0, Aabb::everything());
+    boxes.insert(1, {{nan, 0, 0}, {1, 1, 1}});
+    std::vector<Pair> pairs;
+    boxes.find_pairs(pairs);
+    EXPECT_TRUE(pairs.empty());
+}
+
+/// The judge's own judge: overlaps() on each two boxes, over the edges of the blocks that find_pairs() works in.
+TEST(BruteForce, FindsWhatTheDefinitionSays) {
+    for (const std::size_t count : {0, 1, 2, 63, 64, 65, 66, 129, 200}) {
+        Random random(count);
+        BruteForce boxes;
+        std::vector<Aabb> copies;
+        for (Proxy p = 0; p < count; ++p) {
+            const float x = random.between(0, 5), y = random.between(0, 5), z = random.between(0, 5);
+            copies.push_back({{x, y, z}, {x + 1, y + 2, z + 1}});
+            boxes.insert(p, copies.back());
+        }
+        std::vector<Pair> pairs, expected;
+        for (Proxy p = 0; p < count; ++p)
+            for (Proxy q = p + 1; q < count; ++q)
+                if (overlaps(copies[p], copies[q])) expected.push_back({p, q});
+        boxes.find_pairs(pairs);
+        std::sort(pairs.begin(), pairs.end());
+        EXPECT_EQ(pairs, expected);
+    }
+}
+
+}  // namespace
+}  // namespace fase::broad

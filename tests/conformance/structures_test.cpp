@@ -1,0 +1,318 @@
+/// Every structure of the registry against brute force, through random lives of boxes of every kind of scene.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "fase/broad/any_structure.hpp"
+#include "fase/broad/find_pairs.hpp"
+#include "tests/conformance/scenes.hpp"
+
+namespace fase::conformance {
+namespace {
+
+using broad::AnyStructure;
+using broad::Move;
+using broad::Pair;
+using broad::Proxy;
+
+std::vector<std::string> structure_names() {
+    std::vector<std::string> names;
+    broad::for_each_structure([&]<broad::Structure S>() { names.emplace_back(S::info.name); });
+    return names;
+}
+
+template <class Find> std::vector<Pair> sorted_pairs(Find&& find) {
+    std::vector<Pair> pairs;
+    find(pairs);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+std::vector<Pair> all_pairs(const AnyStructure& s) {
+    return sorted_pairs([&](auto& out) { s.find_pairs(out); });
+}
+std::vector<Proxy> sorted_overlapping(const AnyStructure& s, const Aabb& box) {
+    std::vector<Proxy> found;
+    s.overlapping(box, found);
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// The structure under test and the judge, living the same life.
+class Lives {
+public:
+    Lives(std::string_view structure, const Scene& scene, std::uint64_t seed)
+        : tested(*AnyStructure::named(structure)),
+          judge(*AnyStructure::named("brute_force")),
+          scene_(scene),
+          random_(seed) {}
+
+    AnyStructure tested, judge;
+    std::vector<Proxy> alive;
+
+    void insert(std::size_t count) {
+        std::vector<Move> born;
+        for (std::size_t i = 0; i < count; ++i) {
+            Proxy p;
+            if (dead_.empty()) {
+                p = next_++;
+            } else {
+                p = dead_.back();
+                dead_.pop_back();
+            }
+            born.push_back({p, scene_.draw(random_)});
+            alive.push_back(p);
+        }
+        tested.insert(born);
+        judge.insert(born);
+    }
+    /// Each box with the given chance in 16: a nudge, or (one time in four) a leap to a fresh place.
+    void move(std::uint64_t chance) {
+        std::vector<Move> moved;
+        for (const Proxy p : alive) {
+            if (random_.below(16) >= chance) continue;
+            Aabb box = scene_.draw(random_);
+            if (random_.below(4) != 0) box = nudged(p);
+            moved.push_back({p, box});
+        }
+        tested.move(moved);
+        judge.move(moved);
+    }
+    void erase(std::uint64_t chance) {
+        std::vector<Proxy> gone;
+        for (const Proxy p : alive)
+            if (random_.below(16) < chance) gone.push_back(p);
+        for (const Proxy p : gone) alive.erase(std::find(alive.begin(), alive.end(), p));
+        dead_.insert(dead_.end(), gone.begin(), gone.end());
+        tested.erase(gone);
+        judge.erase(gone);
+    }
+    void commit() {
+        tested.commit();
+        judge.commit();
+    }
+    void expect_same() {
+        ASSERT_EQ(tested.broken_invariant(), "");
+        ASSERT_EQ(judge.broken_invariant(), "");
+        ASSERT_EQ(tested.size(), alive.size());
+        ASSERT_EQ(all_pairs(tested), all_pairs(judge));
+        for (int i = 0; i < 4; ++i) {
+            const Aabb box = scene_.draw(random_);
+            ASSERT_EQ(sorted_overlapping(tested, box), sorted_overlapping(judge, box));
+        }
+    }
+    Random& random() { return random_; }
+
+private:
+    Scene scene_;
+    Random random_;
+    Proxy next_ = 0;
+    std::vector<Proxy> dead_;
+
+    Aabb nudged(Proxy p) {
+        Aabb box;
+        judge.traverse(broad::Everything{}, [&](Proxy q, const Aabb& found) {
+            if (q == p) box = found;
+            return q != p;
+        });
+        const Vec3 by = point_in(random_, -0.1f, 0.1f);
+        return {box.lo + by, box.hi + by};
+    }
+};
+
+class EveryStructure : public ::testing::TestWithParam<std::tuple<std::string, Scene>> {
+protected:
+    Lives lives(std::uint64_t seed) const { return {std::get<0>(GetParam()), std::get<1>(GetParam()), seed}; }
+};
+
+TEST_P(EveryStructure, ReportsWhatBruteForceReportsAllItsLife) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        Lives life = lives(seed);
+        life.insert(100 + 40 * seed);
+        life.commit();
+        ASSERT_NO_FATAL_FAILURE(life.expect_same());
+        for (int step = 0; step < 24; ++step) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", step " + std::to_string(step));
+            if (step % 3 == 0) life.insert(life.random().below(12));
+            life.move(step % 2 == 0 ? 16 : 1);
+            if (step % 4 == 1) life.erase(life.random().below(6));
+            if (step % 4 == 3) life.move(3);  // twice before one commit
+            life.commit();
+            ASSERT_NO_FATAL_FAILURE(life.expect_same());
+        }
+    }
+}
+
+TEST_P(EveryStructure, CanBeEmptiedAndFilledAgain) {
+    Lives life = lives(7);
+    life.commit();
+    ASSERT_NO_FATAL_FAILURE(life.expect_same());
+    for (const std::size_t count : {1u, 2u, 3u, 60u, 1u, 30u}) {
+        life.insert(count);
+        life.commit();
+        ASSERT_NO_FATAL_FAILURE(life.expect_same());
+        life.insert(2);  // born, moved and dead between two commits
+        life.move(16);
+        life.erase(16);
+        ASSERT_EQ(life.tested.size(), 0u);
+        life.commit();
+        ASSERT_NO_FATAL_FAILURE(life.expect_same());
+    }
+}
+
+TEST_P(EveryStructure, VisitsEachBoxOnceAndStopsWhenTold) {
+    Lives life = lives(8);
+    life.insert(80);
+    life.commit();
+    life.move(16);
+    life.commit();
+    std::vector<Proxy> seen;
+    life.tested.traverse(broad::Everything{}, [&](Proxy p, const Aabb&) {
+        seen.push_back(p);
+        return true;
+    });
+    std::sort(seen.begin(), seen.end());
+    std::sort(life.alive.begin(), life.alive.end());
+    EXPECT_EQ(seen, life.alive);
+    for (const int wanted : {1, 2, 37}) {
+        int visited = 0;
+        life.tested.traverse(broad::Everything{}, [&](Proxy, const Aabb&) { return ++visited < wanted; });
+        EXPECT_EQ(visited, wanted);
+    }
+}
+
+TEST_P(EveryStructure, HandsOutTheExactBoxes) {
+    Lives life = lives(9);
+    life.insert(50);
+    life.commit();
+    life.move(16);
+    life.commit();
+    const auto boxes_of = [](const AnyStructure& s) {
+        std::vector<std::pair<Proxy, std::string>> boxes;
+        s.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
+            boxes.emplace_back(p, std::string(reinterpret_cast<const char*>(&box), sizeof box));
+            return true;
+        });
+        std::sort(boxes.begin(), boxes.end());
+        return boxes;
+    };
+    EXPECT_EQ(boxes_of(life.tested), boxes_of(life.judge));
+}
+
+TEST_P(EveryStructure, FindsTheSamePairsForAnyNumberOfThreads) {
+    Lives life = lives(10);
+    life.insert(700);
+    life.commit();
+    life.move(8);
+    life.commit();
+    const std::vector<Pair> expected = all_pairs(life.judge);
+    std::vector<Pair> with_two;
+    for (const int threads : {1, 2, 4}) {
+        const auto tasks = make_thread_runner(threads);
+        std::vector<Pair> pairs;
+        life.tested.find_pairs(*tasks, pairs);
+        if (threads == 2) with_two = pairs;
+        if (threads == 4) {
+            EXPECT_EQ(pairs, with_two) << "the order depends on the number of threads";
+        }
+        std::sort(pairs.begin(), pairs.end());
+        EXPECT_EQ(pairs, expected);
+    }
+}
+
+TEST_P(EveryStructure, AnswersAskersStoredOrNot) {
+    Lives life = lives(11);
+    life.insert(600);
+    life.commit();
+    std::vector<Move> askers;
+    std::vector<std::uint8_t> is_asker(500, 0);
+    life.judge.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
+        if (p % 2 == 0 && p < 500) {
+            askers.push_back({p, box});
+            is_asker[p] = 1;
+        }
+        return true;
+    });
+    const auto touches_asker = [&](Pair pair) {
+        return (pair.a < 500 && is_asker[pair.a] != 0) || (pair.b < 500 && is_asker[pair.b] != 0);
+    };
+    std::vector<Pair> expected;
+    for (const Pair pair : all_pairs(life.judge))
+        if (touches_asker(pair)) expected.push_back(pair);
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, is_asker, out); }), expected);
+    const auto tasks = make_thread_runner(3);
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, askers, is_asker, out); }), expected);
+
+    std::vector<Pair> twice = expected;  // pairs of two askers are found from both sides when nothing marks them
+    for (const Pair pair : expected)
+        if (pair.a < 500 && is_asker[pair.a] != 0 && pair.b < 500 && is_asker[pair.b] != 0) twice.push_back(pair);
+    std::sort(twice.begin(), twice.end());
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, out); }), twice);
+
+    const Move stranger{5000, std::get<1>(GetParam()).draw(life.random())};
+    std::vector<Pair> strange;
+    for (const Proxy p : sorted_overlapping(life.judge, stranger.box)) strange.push_back({p, stranger.proxy});
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(std::span(&stranger, 1), out); }), strange);
+}
+
+TEST_P(EveryStructure, FindsThePairsBetweenTwo) {
+    for (const std::string& other_name : structure_names()) {
+        Lives life = lives(12);
+        life.insert(200);
+        life.commit();
+        std::vector<Move> all;
+        life.judge.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
+            all.push_back({p, box});
+            return true;
+        });
+        AnyStructure one = *AnyStructure::named(std::get<0>(GetParam()));
+        AnyStructure other = *AnyStructure::named(other_name);
+        for (const Move& m : all) (m.proxy % 3 == 0 ? one : other).insert(std::span(&m, 1));
+        one.commit();
+        other.commit();
+        std::vector<Pair> expected;
+        for (const Pair pair : all_pairs(life.judge))
+            if ((pair.a % 3 == 0) != (pair.b % 3 == 0)) expected.push_back(pair);
+        EXPECT_EQ(sorted_pairs([&](auto& out) { one.find_pairs_between(other, out); }), expected);
+        EXPECT_EQ(sorted_pairs([&](auto& out) { other.find_pairs_between(one, out); }), expected);
+    }
+}
+
+TEST_P(EveryStructure, DependsOnItsPastAlone) {
+    const auto pairs_in_order = [&] {
+        Lives life = lives(13);
+        life.insert(300);
+        life.commit();
+        for (int i = 0; i < 5; ++i) {
+            life.move(9);
+            life.erase(1);
+            life.insert(5);
+            life.commit();
+        }
+        std::vector<Pair> pairs;
+        life.tested.find_pairs(pairs);
+        return pairs;
+    };
+    EXPECT_EQ(pairs_in_order(), pairs_in_order());
+}
+
+std::string name_of_case(const ::testing::TestParamInfo<EveryStructure::ParamType>& info) {
+    return std::get<0>(info.param) + "_on_" + std::get<1>(info.param).name;
+}
+INSTANTIATE_TEST_SUITE_P(Registry, EveryStructure,
+                         ::testing::Combine(::testing::ValuesIn(structure_names()), ::testing::ValuesIn(all_scenes())),
+                         name_of_case);
+
+TEST(Registry, NamesAreUniqueAndEveryStructureSaysWhatItIs) {
+    std::set<std::string_view> names;
+    broad::for_each_structure([&]<broad::Structure S>() {
+        EXPECT_TRUE(names.insert(S::info.name).second) << S::info.name;
+        EXPECT_FALSE(S::info.idea.empty());
+        EXPECT_FALSE(S::info.source.empty());
+    });
+    EXPECT_TRUE(names.contains(broad::default_structure));
+}
+
+}  // namespace
+}  // namespace fase::conformance

@@ -1,0 +1,73 @@
+# Sourced by `run` and `test`: makes sure that the packages of packages.txt are there, then configures and builds.
+# The caller has done `set -euo pipefail` and stands in the repository's root.
+
+say() { printf '%s\n' "$*"; }
+stop() { printf '%s: error: %s\n' "${0##*/}" "$*" >&2; exit 1; }
+
+# is_at_least HAVE NEED: compares dotted versions.
+is_at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
+
+# is_there KIND NAME [LEAST]: is a command (of at least that version) or a header on this system?
+is_there() {
+    case $1 in
+        cmd)
+            command -v "$2" >/dev/null 2>&1 || return 1
+            [ -z "${3:-}" ] || is_at_least "$("$2" --version 2>&1 | grep -oE '[0-9]+(\.[0-9]+)+' | head -n 1)" "$3" ;;
+        header)
+            local folder
+            for folder in /usr/include /usr/local/include /opt/homebrew/include; do
+                [ ! -e "$folder/$2" ] || return 0
+            done
+            return 1 ;;
+        *) stop "packages.txt: found '$1', need cmd or header" ;;
+    esac
+}
+
+# missing_packages PURPOSE…: the packages of packages.txt for these purposes that are not there, a line each.
+missing_packages() {
+    local package purpose kind name least
+    while read -r package purpose kind name least; do
+        case " $* " in *" $purpose "*) ;; *) continue ;; esac
+        is_there "$kind" "$name" "$least" || say "$package"
+    done < <(sed 's/#.*//; /^[[:space:]]*$/d' packages.txt)
+}
+
+# install_packages PURPOSE…: installs what is missing with apt; elsewhere names it and stops.
+install_packages() {
+    local missing as_root=()
+    mapfile -t missing < <(missing_packages "$@")
+    [ ${#missing[@]} -gt 0 ] || return 0
+    command -v apt-get >/dev/null 2>&1 || stop "missing on this system (Debian's names): ${missing[*]}"
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null 2>&1 || stop "missing packages; as root: apt-get install ${missing[*]}"
+        as_root=(sudo)
+        [ -t 0 ] || as_root=(sudo -n)
+    fi
+    say "installing ${missing[*]}"
+    mkdir -p build
+    if ! {
+        "${as_root[@]}" apt-get update -q || true
+        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+    } </dev/null >build/packages.log 2>&1; then
+        tail -n 15 build/packages.log >&2
+        stop "apt-get could not install ${missing[*]}; the whole log: build/packages.log"
+    fi
+    mapfile -t missing < <(missing_packages "$@")
+    [ ${#missing[@]} -eq 0 ] || stop "installed, but still not usable: ${missing[*]}"
+}
+
+# build PRESET [TARGET…]: configures when the build folder is new, then builds.
+build() {
+    local preset=$1
+    shift
+    mkdir -p "build/$preset"
+    if [ ! -e "build/$preset/build.ninja" ]; then
+        say "configuring build/$preset"
+        cmake --preset "$preset" >"build/$preset/configure.log" 2>&1 || {
+            tail -n 30 "build/$preset/configure.log" >&2
+            stop "cmake could not configure; the whole log: build/$preset/configure.log"
+        }
+    fi
+    say "building build/$preset"
+    cmake --build "build/$preset" ${1:+--target "$@"}
+}
