@@ -42,27 +42,21 @@ Quat turn(Random& random) {
 }
 
 /// A hull of about 30 vertices around a ball of diameter 1.
-template <class S>
-S make(Random&) {
-    return S{};
-}
-template <>
-ConvexHull make<ConvexHull>(Random& random) {
+template <class S> S make(Random&) { return S{}; }
+template <> ConvexHull make<ConvexHull>(Random& random) {
     std::vector<Vec3> points;
     for (int i = 0; i < 32; ++i) points.push_back(normalized(in_cube(random)) * 0.6f);
     Result<ConvexHull> hull = build_convex_hull(points);
     return hull ? *hull : make<ConvexHull>(random);
 }
 
-template <class A, class B>
-struct Pairs {
+template <class A, class B> struct Pairs {
     std::vector<std::pair<A, B>> shapes;
     std::vector<LocalPose> places;
 };
 
 /// Random pairs that touch with less than 5 cm of overlap, all shapes about 1 m in size.
-template <class A, class B>
-Pairs<A, B> touching() {
+template <class A, class B> Pairs<A, B> touching() {
     Pairs<A, B> pairs;
     Random random(1);
     for (int i = 0; i < 8; ++i) pairs.shapes.emplace_back(make<A>(random), make<B>(random));
@@ -82,8 +76,7 @@ Pairs<A, B> touching() {
 }
 
 /// Random pairs near each other that do not touch.
-template <class A, class B>
-Pairs<A, B> apart() {
+template <class A, class B> Pairs<A, B> apart() {
     Pairs<A, B> pairs;
     Random random(2);
     for (int i = 0; i < 8; ++i) pairs.shapes.emplace_back(make<A>(random), make<B>(random));
@@ -118,8 +111,7 @@ constexpr auto general = [](const auto& a, const auto& b, const LocalPose& p, fl
     return narrow::collide_general(a, b, p, m);
 };
 
-template <class A, class B>
-void add() {
+template <class A, class B> void add() {
     const std::string name = std::string(A::name) + "/" + std::string(B::name);
     const auto in_touch = touching<A, B>();
     const auto away = apart<A, B>();

@@ -45,7 +45,8 @@ Error bad(const JsonValue& at, std::string problem) {
 Result<std::optional<double>> number_in(const JsonValue& object, std::string_view key) {
     const std::optional<JsonValue> value = object.find(key);
     if (!value || value->is(JsonKind::Null)) return std::optional<double>{};
-    if (!value->is(JsonKind::Number)) return bad(*value, fmt::format("found {}, need a number", name_of(value->kind())));
+    if (!value->is(JsonKind::Number))
+        return bad(*value, fmt::format("found {}, need a number", name_of(value->kind())));
     return std::optional<double>{value->number()};
 }
 
@@ -191,8 +192,13 @@ Result<std::vector<Verdict>> judge_file(const std::string& file) {
 
 /// Text that can do no harm on a terminal.
 std::string plain(std::string_view text) {
-    const std::string quoted = scene::quoted(text);
-    return quoted.substr(1, quoted.size() - 2);
+    std::string safe;
+    for (const char c : text) {
+        const bool quote = c == '"' || c == '\\';
+        const std::string one = quote ? std::string(1, c) : scene::quoted({&c, 1});
+        safe += quote || static_cast<unsigned char>(c) >= 0x80 ? std::string(1, c) : one.substr(1, one.size() - 2);
+    }
+    return safe;
 }
 
 std::string json_of(const std::optional<double>& number) {
@@ -205,14 +211,15 @@ struct Summary {
 };
 
 void print_json(const std::vector<Verdict>& verdicts, const Summary& sum) {
-    std::string text = fmt::format(R"({{"total": {}, "within": {}, "skipped": {}, "worst_error": {}, "cases": [)", sum.total,
-                                   sum.within, sum.skipped, sum.worst_error);
+    std::string text = fmt::format(R"({{"total": {}, "within": {}, "skipped": {}, "worst_error": {}, "cases": [)",
+                                   sum.total, sum.within, sum.skipped, sum.worst_error);
     bool first = true;
     for (const Verdict& v : verdicts) {
-        text += fmt::format("{}\n {{\"id\": {}, \"distance\": {}, \"published\": {}, \"error\": {}, \"within\": {}, \"skipped\": {}}}",
-                            first ? "" : ",", scene::quoted(v.id), json_of(v.distance), json_of(v.published),
-                            json_of(v.error), v.skipped.empty() ? (v.within ? "true" : "false") : "null",
-                            v.skipped.empty() ? "null" : scene::quoted(v.skipped));
+        text += fmt::format(
+            "{}\n {{\"id\": {}, \"distance\": {}, \"published\": {}, \"error\": {}, \"within\": {}, \"skipped\": {}}}",
+            first ? "" : ",", scene::quoted(v.id), json_of(v.distance), json_of(v.published), json_of(v.error),
+            v.skipped.empty() ? (v.within ? "true" : "false") : "null",
+            v.skipped.empty() ? "null" : scene::quoted(v.skipped));
         first = false;
     }
     text += "\n]}\n";

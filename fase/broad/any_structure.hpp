@@ -30,7 +30,8 @@ public:
     /// structure.
     void find_pairs(std::vector<Pair>& out) const;
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_asker` does.
+    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_asker` does. With
+    /// tasks, many askers that are stored here cost little more than find_pairs().
     void find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const;
     void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
                        std::vector<Pair>& out) const;

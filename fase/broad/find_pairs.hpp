@@ -3,6 +3,7 @@
 #include <span>
 
 #include "fase/broad/pair_sink.hpp"
+#include "fase/broad/stored_askers.hpp"
 #include "fase/broad/structure.hpp"
 #include "fase/core/tasks.hpp"
 
@@ -22,9 +23,10 @@ concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& ot
 };
 
 /// Appends, for each asker, a pair with every stored box that its box overlaps; never with itself, should it be stored.
-/// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all.
-/// When two askers are both stored here, their pair is found from both sides and so appears twice, unless `is_asker`
-/// (by proxy: 0 or 1; proxies past its end are none) marks them: then only the smaller asks. Cost: one query an asker.
+/// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all; no proxy asks
+/// twice. When two askers are both stored here, their pair is found from both sides and so appears twice, unless
+/// `is_asker` (by proxy; not 0: asks, here or in another call; proxies past its end do not) marks them: then only the
+/// smaller asks. Cost: one query an asker.
 template <Structure S>
 void find_pairs_of(const S& structure, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
                    std::vector<Pair>& out) {
@@ -40,19 +42,6 @@ void find_pairs_of(const S& structure, std::span<const Move> askers, std::span<c
 }
 template <Structure S> void find_pairs_of(const S& structure, std::span<const Move> askers, std::vector<Pair>& out) {
     find_pairs_of(structure, askers, {}, out);
-}
-
-/// The same by several threads: the askers are cut into ranges, whose pairs are appended in the order of the askers.
-template <Structure S>
-void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
-                   std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
-    constexpr std::size_t grain = 512;
-    if (tasks.threads() == 1 || askers.size() <= grain) return find_pairs_of(structure, askers, is_asker, out);
-    std::vector<std::vector<Pair>> found((askers.size() + grain - 1) / grain);
-    parallel_ranges(tasks, askers.size(), grain, [&](std::size_t begin, std::size_t end) {
-        find_pairs_of(structure, askers.subspan(begin, end - begin), is_asker, found[begin / grain]);
-    });
-    for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
 }
 
 /// All that is stored, appended in the structure's own order.
@@ -81,23 +70,56 @@ template <Structure S> void find_pairs(const S& structure, std::vector<Pair>& ou
     }
 }
 
+/// Asks for one asker after the other, as find_pairs_of without tasks does; the askers are cut into ranges for the
+/// threads, and the pairs appended in the order of the askers.
+template <Structure S>
+void ask_one_by_one(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
+                    std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+    constexpr std::size_t grain = 512;
+    if (tasks.threads() == 1 || askers.size() <= grain) return find_pairs_of(structure, askers, is_asker, out);
+    std::vector<std::vector<Pair>> found((askers.size() + grain - 1) / grain);
+    parallel_ranges(tasks, askers.size(), grain, [&](std::size_t begin, std::size_t end) {
+        find_pairs_of(structure, askers.subspan(begin, end - begin), is_asker, found[begin / grain]);
+    });
+    for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
+}
+
 /// The same pairs, found by several threads; the order may differ from the one of a single thread, but not with the
 /// number of threads of `tasks` when that is above 1. Sorted, all are equal.
 template <Structure S> void find_pairs(TaskRunner& tasks, const S& structure, std::vector<Pair>& out) {
+    if (tasks.threads() == 1) return find_pairs(structure, out);
     if constexpr (FindsOwnPairsInParallel<S>) {
-        if (tasks.threads() > 1) return structure.find_pairs(tasks, out);
-        find_pairs(structure, out);
+        structure.find_pairs(tasks, out);
     } else if constexpr (FindsOwnPairs<S>) {
         structure.find_pairs(out);
     } else {
-        if (tasks.threads() == 1) return find_pairs(structure, out);
         std::vector<Move> all;
         stored_boxes(structure, all);
         Proxy largest = 0;
         for (const Move& m : all) largest = m.proxy > largest ? m.proxy : largest;
         const std::vector<std::uint8_t> all_ask(largest + std::size_t{1}, 1);
-        find_pairs_of(tasks, structure, all, all_ask, out);
+        ask_one_by_one(tasks, structure, all, all_ask, out);
     }
+}
+
+/// The pairs of find_pairs_of, by several threads and in another order. When at least a third of what is stored asks,
+/// with the very boxes that are stored, a structure that finds its own pairs finds them all at once, and those of the
+/// others are dropped: for a tree in which everything asks four times faster.
+template <Structure S>
+void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
+                   std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+    if constexpr (FindsOwnPairs<S>) {
+        if (askers.size() >= 256 && 3 * askers.size() >= structure.size()) {
+            const StoredAskers known = stored_askers(structure, askers);
+            if (3 * known.count >= structure.size()) {
+                const std::size_t first = out.size();
+                find_pairs(tasks, structure, out);
+                keep_pairs_of(known, is_asker, out, first);
+                return ask_one_by_one(tasks, structure, known.others, is_asker, out);
+            }
+        }
+    }
+    ask_one_by_one(tasks, structure, askers, is_asker, out);
 }
 
 /// Appends every pair of a box stored in `a` and one stored in `b` that overlap. Proxies of both count as one

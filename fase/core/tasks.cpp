@@ -8,8 +8,12 @@
 #include <vector>
 #else
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+
+#include <optional>
 #endif
 
 namespace fase {
@@ -24,8 +28,8 @@ public:
 };
 
 #ifdef FASE_PLAIN_THREADS
-// A thread sanitizer cannot see how the compiled oneTBB orders its threads and reports races that are none; with threads
-// made anew for each loop it sees all, and so finds the races of the chunks.
+// A thread sanitizer cannot see how the compiled oneTBB orders its threads and reports races that are none; with
+// threads made anew for each loop it sees all, and so finds the races of the chunks.
 class ThreadRunner final : public TaskRunner {
 public:
     explicit ThreadRunner(int threads)
@@ -48,7 +52,13 @@ private:
 #else
 class ThreadRunner final : public TaskRunner {
 public:
-    explicit ThreadRunner(int threads) : arena_(threads > 0 ? threads : int{tbb::task_arena::automatic}) {}
+    explicit ThreadRunner(int threads) {
+        const auto wanted = static_cast<std::size_t>(threads > 0 ? threads : 0);
+        if (wanted > static_cast<std::size_t>(tbb::info::default_concurrency())) {
+            more_.emplace(tbb::global_control::max_allowed_parallelism, wanted);
+        }
+        arena_.initialize(threads > 0 ? threads : int{tbb::task_arena::automatic});
+    }
     void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
         arena_.execute([&] {
             tbb::parallel_for(
@@ -58,6 +68,8 @@ public:
     [[nodiscard]] int threads() const override { return arena_.max_concurrency(); }
 
 private:
+    // oneTBB stops at the number of cores unless told otherwise; of several who tell it, the least counts.
+    std::optional<tbb::global_control> more_;
     tbb::task_arena arena_;
 };
 #endif

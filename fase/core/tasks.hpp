@@ -26,11 +26,16 @@ public:
 /// runner. Several runners may live at once.
 [[nodiscard]] std::unique_ptr<TaskRunner> make_thread_runner(int threads);
 
+/// Keeps the arithmetic of a chunk behind the change of the floating-point mode: compilers move it across when they see
+/// both.
+template <class F> [[gnu::noinline]] void call_range(const F& body, std::size_t begin, std::size_t end) {
+    body(begin, end);
+}
+
 /// Calls `body(begin, end)` for consecutive ranges of at most `grain` items that cover 0..count, in parallel.
-/// The ranges depend on count and grain alone. Runs on the caller when one range covers all. Chunks of more threads compute in
-/// the standard floating-point mode.
-template <class F>
-void parallel_ranges(TaskRunner& tasks, std::size_t count, std::size_t grain, const F& body) {
+/// The ranges depend on count and grain alone. Runs on the caller when one range covers all. Chunks of more threads
+/// compute in the standard floating-point mode.
+template <class F> void parallel_ranges(TaskRunner& tasks, std::size_t count, std::size_t grain, const F& body) {
     if (count == 0) return;
     const std::size_t chunks = (count + grain - 1) / grain;
     if (chunks == 1) {
@@ -40,7 +45,7 @@ void parallel_ranges(TaskRunner& tasks, std::size_t count, std::size_t grain, co
     tasks.run(chunks, [&](std::size_t i) {
         const StandardFloats floats;
         const std::size_t begin = i * grain;
-        body(begin, begin + grain < count ? begin + grain : count);
+        call_range(body, begin, begin + grain < count ? begin + grain : count);
     });
 }
 

@@ -42,8 +42,8 @@ struct BodyMotion {
     Quat rotation;
     Vec3 linear_velocity;
     Vec3 angular_velocity;
-    float unused = 0;
-    float sleep_time = 0;            ///< seconds below the sleep speeds
+    float sleep_time = 0;            ///< seconds below the sleep speeds and within the slop of one place
+    Vec3 drift;                      ///< metres moved since sleep_time began
     std::uint32_t island = no_index; ///< least body index of its island as of the last step
 };
 

@@ -2,6 +2,9 @@
 /// the namespace of each target, hence no #pragma once and no includes.
 /// Source of the soft step: Catto 2024, Solver2D (small steps, relax, restitution last); of the soft constraint: Catto 2011.
 
+#ifndef FASE_LAMBDA_INLINE
+#define FASE_LAMBDA_INLINE __attribute__((always_inline))
+#endif
 #ifndef FASE_INLINE
 #define FASE_INLINE inline __attribute__((always_inline))
 #endif
@@ -213,35 +216,51 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
     V q0 = dot(n, rel), q1 = zero - dot(t2, spin), q2 = dot(t1, spin);
     const V m00 = V::load(k.coupling[0] + s), m01 = V::load(k.coupling[1] + s), m02 = V::load(k.coupling[2] + s);
     const V m11 = V::load(k.coupling[3] + s), m12 = V::load(k.coupling[4] + s), m22 = V::load(k.coupling[5] + s);
-    V sum = zero, sx = zero, sy = zero, total = zero, twist_limit = zero;
+    V impulse[4], x[4], y[4], mass[4], bias[4], scale[4], decay[4];
+    V mass_sum = zero, residual = zero, scaled = zero, decayed = zero;
     for (int i = 0; i < 4; ++i) {
-        const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s);
-        const V old = V::load(k.impulse[i] + s), mass = V::load(k.point_mass[i] + s);
-        const V separation = V::load(k.separation[i] + s) + base + x * e1 + y * e2;
-        const V speed = q0 + x * q1 + y * q2;
-        V impulse;
+        x[i] = V::load(k.x[i] + s);
+        y[i] = V::load(k.y[i] + s);
+        mass[i] = V::load(k.point_mass[i] + s);
+        impulse[i] = V::load(k.impulse[i] + s);
+        const V separation = V::load(k.separation[i] + s) + base + x[i] * e1 + y[i] * e2;
         if constexpr (biased) {
-            const V bias = select_greater(separation, zero, separation * rate, max_of(bias_rate * separation, fastest_out));
-            const V scale = select_greater(separation, zero, one, mass_scale);
-            const V decay = select_greater(separation, zero, zero, impulse_scale);
-            impulse = max_of(old - mass * (scale * speed + bias) - decay * old, zero);
+            bias[i] = select_greater(separation, zero, separation * rate, max_of(bias_rate * separation, fastest_out));
+            scale[i] = select_greater(separation, zero, one, mass_scale);
+            decay[i] = select_greater(separation, zero, zero, impulse_scale);
         } else {
-            const V bias = max_of(separation, zero) * rate;
-            impulse = max_of(old - mass * (speed + bias), zero);
+            bias[i] = max_of(separation, zero) * rate;
+            scale[i] = one;
+            decay[i] = zero;
         }
-        impulse = select_greater(mass, zero, impulse, zero);
-        impulse.store(k.impulse[i] + s);
-        const V d = impulse - old, dx = x * d, dy = y * d;
+        mass_sum = mass_sum + mass[i];
+        residual = residual + (mass[i] * (scale[i] * (q0 + x[i] * q1 + y[i] * q2) + bias[i]) + decay[i] * impulse[i]);
+        scaled = scaled + mass[i] * scale[i];
+        decayed = decayed + mass[i] * decay[i];
+    }
+    V sum = zero, sx = zero, sy = zero;
+    const auto push = [&](int i, V wanted) FASE_LAMBDA_INLINE {
+        const V next = select_greater(mass[i], zero, max_of(wanted, zero), zero);
+        const V d = next - impulse[i], dx = x[i] * d, dy = y[i] * d;
+        impulse[i] = next;
         sum = sum + d;
         sx = sx + dx;
         sy = sy + dy;
-        if constexpr (!biased) {
-            total = total + impulse;
-            twist_limit = twist_limit + impulse * V::load(k.lever[i] + s);
-        }
         q0 = q0 + (m00 * d + m01 * dx + m02 * dy);
         q1 = q1 + (m01 * d + m11 * dx + m12 * dy);
         q2 = q2 + (m02 * d + m12 * dx + m22 * dy);
+    };
+    // First all points together, so that a load that rests on them evenly is borne evenly; then one by one.
+    const V stiffness = mass_sum * (scaled * m00) + decayed;
+    const V together = select_greater(stiffness, zero, residual / stiffness, zero);
+    for (int i = 0; i < 4; ++i) push(i, impulse[i] - mass[i] * together);
+    for (int i = 0; i < 4; ++i)
+        push(i, impulse[i] - mass[i] * (scale[i] * (q0 + x[i] * q1 + y[i] * q2) + bias[i]) - decay[i] * impulse[i]);
+    V total = zero, twist_limit = zero;
+    for (int i = 0; i < 4; ++i) {
+        impulse[i].store(k.impulse[i] + s);
+        total = total + impulse[i];
+        twist_limit = twist_limit + impulse[i] * V::load(k.lever[i] + s);
     }
     u.template apply<one_sided>(n * sum, t1 * sy - t2 * sx, ca, cb, ia, ib);
 
@@ -260,9 +279,9 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
         const V old1 = V::load(k.friction_impulse[0] + s), old2 = V::load(k.friction_impulse[1] + s);
         V new1 = old1 - (f0 * u1 + f1 * u2), new2 = old2 - (f1 * u1 + f2 * u2);
         const V most = mu * total, squared = new1 * new1 + new2 * new2;
-        const V scale = select_greater(squared, most * most, most / sqrt_of(squared), one);
-        new1 = new1 * scale;
-        new2 = new2 * scale;
+        const V shrink = select_greater(squared, most * most, most / sqrt_of(squared), one);
+        new1 = new1 * shrink;
+        new2 = new2 * shrink;
         new1.store(k.friction_impulse[0] + s);
         new2.store(k.friction_impulse[1] + s);
         u.template apply<one_sided>(t1 * (new1 - old1) + t2 * (new2 - old2), n * d, ca, cb, ia, ib);

@@ -62,6 +62,7 @@ void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> 
         SolverMotion& motion = motions[i];
         if (!motion.moves) continue;
         Vec3 velocity = read(body.velocity), spin = read(body.spin);
+        motion.velocity_before = without_locked(velocity, motion.locks);
         Vec3 pushed, turned;
         if (again) {
             pushed = velocity - motion.free_velocity;
@@ -89,7 +90,9 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
             write(body.velocity, velocity);
             write(body.spin, spin);
         }
-        write(body.moved, read(body.moved) + velocity * h);
+        const bool free = motion.moves && velocity == motion.free_velocity;
+        const Vec3 mean = free ? (velocity + motion.velocity_before) * 0.5f : velocity;
+        write(body.moved, read(body.moved) + mean * h);
         Quat turned{body.turned[0], body.turned[1], body.turned[2], body.turned[3]};
         const float fast = length_squared(spin) * h * h;
         if (motion.tumbles && fast > 1e-8f) {

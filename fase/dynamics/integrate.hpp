@@ -16,6 +16,7 @@ struct alignas(64) SolverMotion {
     float angular_factor = 1;
     Vec3 moments;             ///< principal, kg m²; 0 on axes that cannot turn
     Quat rotation;            ///< principal axes to world at the begin of the step
+    Vec3 velocity_before;     ///< at the begin of the sub-step
     Vec3 free_velocity;       ///< after forces, before contacts: what contacts changed is the difference
     Vec3 free_spin;
     std::uint8_t locks = 0;
@@ -33,7 +34,8 @@ struct SpeedCaps {
 /// which starts them warm without another pass over the contacts.
 void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> motions, bool again, SpeedCaps caps);
 
-/// Moves and turns by one sub-step. Bodies with unequal moments turn with their angular momentum kept, by the symmetric splitting
+/// Moves and turns by one sub-step. A body that no contact pushed moves by the mean of its velocities before and after, which is exact for
+/// constant forces: free flight is a true parabola and keeps its energy. Bodies with unequal moments turn with their angular momentum kept, by the symmetric splitting
 /// into turns about the principal axes. Source: Dullweber, Leimkuhler, McLachlan 1997, Symplectic splitting methods for
 /// rigid body molecular dynamics; without libm: tangents of half angles by a rational approximation.
 void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motions, float sub_step);

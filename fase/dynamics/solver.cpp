@@ -248,9 +248,8 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
 }
 
-/// Gives back what each point's material keeps of the speed of approach. The speed is that at the moment of touch, from the energy at the
-/// begin of the step, corrected for the half kick by which velocities lead positions: a perfect bounce then keeps the energy that the
-/// integrator keeps in free fall, whatever part of the step was left at the touch.
+/// Gives back what each point's material keeps of the speed of approach. The speed is that at the moment of touch, from speed, gap and
+/// forces at the begin of the step: a perfect bounce keeps the energy, whatever part of the step was left at the touch.
 void Solver::bounce(ContactBlock& k, const SolverSettings& settings) {
     const float sub_steps = static_cast<float>(settings.sub_steps), h = settings.time_step / sub_steps;
     for (int lane = 0; lane < block_lanes; ++lane) {
@@ -260,14 +259,13 @@ void Solver::bounce(ContactBlock& k, const SolverSettings& settings) {
         const SolverMass& mass_a = masses_[k.a[lane]];
         const SolverMass& mass_b = masses_[k.b[lane]];
         const Vec3 n = read(k.normal, lane), t1 = read(k.tangent, lane), t2 = cross(n, t1);
-        const float half_kick = 0.5f * k.closing[lane];
+        const float closing = k.closing[lane] / h;  // m/s²
         for (int i = 0; i < 4; ++i) {
             const float approach = k.approach[i][lane], mass = k.point_mass[i][lane], old = k.impulse[i][lane];
             if (!(mass > 0) || !(old > 0) || !(approach > settings.restitution_threshold)) continue;
             const float gap = std::max(k.separation[i][lane], 0.0f);
-            const float at_start = approach + half_kick;
-            const float squared = at_start * at_start + 2 * (k.closing[lane] / h) * gap;
-            const float wanted = k.restitution[lane] * std::sqrt(std::max(squared, 0.0f)) + half_kick;
+            const float at_touch = std::sqrt(std::max(approach * approach + 2 * closing * gap, 0.0f));
+            const float wanted = k.restitution[lane] * at_touch;
             const Vec3 shift = t1 * k.x[i][lane] + t2 * k.y[i][lane];
             const Vec3 ra = read(k.offset_a, lane) + shift, rb = read(k.offset_b, lane) + shift;
             Vec3 va = read(a.velocity), wa = read(a.spin), vb = read(b.velocity), wb = read(b.spin);

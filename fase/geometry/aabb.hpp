@@ -7,16 +7,15 @@
 
 namespace fase {
 
-/// Axis-aligned box, closed at both ends: touching boxes overlap. Default: empty, overlaps nothing. May be infinite.
+/// Axis-aligned box, closed at both ends: touching boxes overlap. Default: empty, overlaps nothing but endless boxes.
+/// May be infinite.
 struct Aabb {
     static constexpr float infinity = std::numeric_limits<float>::infinity();
     Vec3 lo{infinity, infinity, infinity};
     Vec3 hi{-infinity, -infinity, -infinity};
     friend constexpr bool operator==(const Aabb&, const Aabb&) = default;
     /// The box that holds everything.
-    static constexpr Aabb everything() {
-        return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
-    }
+    static constexpr Aabb everything() { return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}}; }
 };
 
 constexpr bool overlaps(const Aabb& a, const Aabb& b) {

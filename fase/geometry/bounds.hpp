@@ -14,8 +14,9 @@ namespace fase {
 /// Radius of the smallest ball around the frame's origin that holds the shape; infinite for a half-space.
 [[nodiscard]] float outer_radius(const Shape& shape);
 
-/// Radius of a ball around the shape's centre of volume that fits inside it (exact for round shapes and boxes, for hulls the least
-/// distance to a face): how far a body may move in a step before it can pass through a thin thing. 0 for a half-space.
+/// Radius of a ball around the shape's centre of volume that fits inside it (exact for round shapes and boxes, for
+/// hulls the least distance to a face): how far a body may move in a step before it can pass through a thin thing. 0
+/// for a half-space.
 [[nodiscard]] float inner_radius(const Shape& shape);
 
 }  // namespace fase

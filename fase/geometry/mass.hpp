@@ -31,8 +31,8 @@ struct PrincipalInertia {
     Vec3 moments;
     Quat axes;
 };
-/// By cyclic Jacobi rotations in double (Golub, Van Loan 2013, Matrix Computations, 8.5). A diagonal matrix gives exactly its diagonal and no
-/// rotation. Moments come in the order that needs the least turning.
+/// By cyclic Jacobi rotations in double (Golub, Van Loan 2013, Matrix Computations, 8.5). A diagonal matrix gives
+/// exactly its diagonal and no rotation. Moments come in the order that needs the least turning.
 [[nodiscard]] PrincipalInertia principal(const Mat3& inertia);
 
 /// An error that names what is wrong unless: mass finite and above 0, inertia finite, symmetric, positive definite, and

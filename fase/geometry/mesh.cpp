@@ -86,14 +86,15 @@ TriangleMesh lathe(std::span<const Ring> rings, int segments) {
 /// Rings of a ball of `radius` whose upper half is raised and lower half sunk by `apart`.
 std::vector<Ring> ball_rings(double radius, double apart, int segments) {
     std::vector<Ring> rings{{0, apart + radius}};
-    const std::vector<Point2> arc = circle(segments);  // from pole to pole in segments / 2 steps
+    const std::vector<Point2> arc =
+        circle(segments);  // from pole to pole in segments / 2 steps; segments are a multiple of 4
     for (int i = 1; i < segments / 2; ++i) {
         const Point2 p = arc[static_cast<std::size_t>(i)];
         const bool equator = 4 * i == segments;
-        const double up = equator ? 0 : radius * p.x;
-        const bool upper = 4 * i <= segments;
-        rings.push_back({radius * p.y, upper ? up + apart : up - apart});
-        if (equator && apart > 0) rings.push_back({radius * p.y, -apart});
+        if (4 * i <= segments) rings.push_back({radius * p.y, equator ? apart : apart + radius * p.x});
+        if (4 * i > segments || (equator && apart > 0)) {
+            rings.push_back({radius * p.y, equator ? -apart : -apart + radius * p.x});
+        }
     }
     rings.push_back({0, -apart - radius});
     return rings;
@@ -140,7 +141,7 @@ struct Mesher {
 }  // namespace
 
 TriangleMesh triangles(const Shape& shape, int detail) {
-    const int segments = detail < 3 ? 4 : detail + detail % 2;
+    const int segments = detail < 4 ? 4 : (detail + 3) / 4 * 4;
     return std::visit(Mesher{segments}, shape);
 }
 

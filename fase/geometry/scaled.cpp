@@ -83,8 +83,7 @@ struct Mapper {
     /// The image of the plane's normal is a column of the matrix of cofactors.
     Result<TurnedShape> operator()(const HalfSpace&) const {
         const Vec3d up = normalized(cross(map.z, map.x) * (determinant(map) < 0 ? -1.0 : 1.0));
-        Vec3d side = parts.turn.x - up * dot(parts.turn.x, up);
-        side = normalized(side);
+        const Vec3d side = parts.turn.x;  // in the plane, so at right angles to up
         return TurnedShape{HalfSpace{}, to_float(to_quat(Mat3d{side, up, cross(side, up)}))};
     }
 };

@@ -9,7 +9,7 @@ namespace fase {
 /// The shape with every point's coordinates multiplied by `scale` (any numbers but 0; negative ones mirror), in the
 /// same frame. A sphere or capsule under one scale, a cylinder under equal scales of x and z, a box or a hull always
 /// stay what they are; "equal" means within 1e-4 of each other, the mean is taken then. All else becomes a hull of
-/// points on the true surface, of at most 182 vertices, inside the true shape and within 2.5 % of its largest half size
+/// points on the true surface, of at most 202 vertices, inside the true shape and within 2.5 % of its largest half size
 /// of it. BadArgument when a scale is 0 or not finite, or the result is out of the range of sizes; Unsupported for a
 /// half-space turned upside down (see transformed()).
 Result<Shape> scaled(const Shape& shape, Vec3 scale);

@@ -29,8 +29,7 @@ concept ConvexShape = NamedShape<S> && requires(const S& shape, Vec3 f, Vec3d d)
 };
 
 /// A list of shapes; its order is the order of the kinds in tables and files.
-template <NamedShape... S>
-struct ShapeList {
+template <NamedShape... S> struct ShapeList {
     using Variant = std::variant<S...>;
     static constexpr std::size_t count = sizeof...(S);
 };
@@ -40,14 +39,8 @@ using AllShapes = ShapeList<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpac
 using Shape = AllShapes::Variant;
 
 /// Calls f.operator()<S>() for every shape of the list, in its order.
-template <class F, class... S>
-void for_each_shape(F&& f, ShapeList<S...>) {
-    (f.template operator()<S>(), ...);
-}
-template <class F>
-void for_each_shape(F&& f) {
-    for_each_shape(f, AllShapes{});
-}
+template <class F, class... S> void for_each_shape(F&& f, ShapeList<S...>) { (f.template operator()<S>(), ...); }
+template <class F> void for_each_shape(F&& f) { for_each_shape(f, AllShapes{}); }
 
 /// The shape's name as in the list: "sphere", "box" …
 [[nodiscard]] inline std::string_view name_of(const Shape& shape) {

@@ -4,7 +4,8 @@
 
 namespace fase {
 
-/// First turn by `rotation` (orthonormal, determinant 1), then move by `position`. "b_in_a" takes b's points to a's frame.
+/// First turn by `rotation` (orthonormal, determinant 1), then move by `position`. "b_in_a" takes b's points to a's
+/// frame.
 struct TransformD {
     Mat3d rotation = Mat3d::identity();
     Vec3d position;
@@ -22,7 +23,8 @@ constexpr TransformD operator*(const TransformD& a, const TransformD& b) {
 constexpr TransformD inverse(const TransformD& t) {
     return {transpose(t.rotation), -transpose_times(t.rotation, t.position)};
 }
-/// The same motion in double; the quaternion is normalised again, so that the matrix is orthonormal to double precision.
+/// The same motion in double; the quaternion is normalised again, so that the matrix is orthonormal to double
+/// precision.
 inline TransformD to_double(const LocalPose& pose) {
     return {to_matrix(normalized(to_double(pose.rotation))), to_double(pose.position)};
 }

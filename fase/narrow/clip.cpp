@@ -77,18 +77,23 @@ ClipPolygon ClipFrame::clip(const Feature& incident) const {
 }
 
 void ClipFrame::clip_polygon(ClipPolygon& polygon) const {
-    ClipPolygon clipped;
-    for (int s = 0; s < side_count_ && polygon.count > 0; ++s) {
+    ClipPolygon other;
+    ClipPolygon *whole = &polygon, *clipped = &other;
+    for (int s = 0; s < side_count_ && whole->count > 0; ++s) {
         const Side& side = sides_[static_cast<std::size_t>(s)];
-        clipped.count = 0;
+        clipped->count = 0;
         const auto put = [&](const ClipPoint& p) {
-            if (clipped.count < ClipPolygon::capacity) clipped.points[static_cast<std::size_t>(clipped.count++)] = p;
+            if (clipped->count < ClipPolygon::capacity) clipped->points[static_cast<std::size_t>(clipped->count++)] = p;
         };
-        ClipPoint from = polygon.points[static_cast<std::size_t>(polygon.count - 1)];
+        bool all_in = true;
+        for (int i = 0; i < whole->count && all_in; ++i) {
+            all_in = side.beyond(whole->points[static_cast<std::size_t>(i)]) <= slack_;
+        }
+        if (all_in) continue;
+        ClipPoint from = whole->points[static_cast<std::size_t>(whole->count - 1)];
         double from_beyond = side.beyond(from);
-        bool cut_any = false;
-        for (int i = 0; i < polygon.count; ++i) {
-            const ClipPoint to = polygon.points[static_cast<std::size_t>(i)];
+        for (int i = 0; i < whole->count; ++i) {
+            const ClipPoint to = whole->points[static_cast<std::size_t>(i)];
             const double to_beyond = side.beyond(to);
             const bool from_out = from_beyond > slack_, to_out = to_beyond > slack_;
             if (from_out != to_out) {
@@ -102,12 +107,16 @@ void ClipFrame::clip_polygon(ClipPolygon& polygon) const {
                 }
             }
             if (!to_out) put(to);
-            cut_any = cut_any || to_out;
             from = to;
             from_beyond = to_beyond;
         }
-        if (cut_any) polygon = clipped;
+        ClipPolygon* const done = clipped;
+        clipped = whole;
+        whole = done;
     }
+    if (whole == &polygon) return;
+    polygon.count = whole->count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(whole->count); ++i) polygon.points[i] = whole->points[i];
 }
 
 void ClipFrame::clip_segment(ClipPolygon& segment) const {

@@ -1,6 +1,7 @@
 /// Faces, edges and features of boxes, hulls and cylinders.
 #include "fase/narrow/core_view.hpp"
 
+#include <array>
 #include <limits>
 
 namespace fase::narrow {

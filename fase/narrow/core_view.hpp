@@ -1,9 +1,9 @@
 #pragma once
 /// What the general narrow phase asks of any convex shape, behind one table of functions a shape.
-#include <array>
 #include <cstdint>
 
 #include "fase/geometry/shapes.hpp"
+#include "fase/narrow/buffer.hpp"
 
 namespace fase::narrow {
 
@@ -29,9 +29,9 @@ struct Corner {
 /// from outside), a segment (2) or a point (1). Frame of the shape.
 struct Feature {
     static constexpr int capacity = 64;  ///< faces with more corners are thinned evenly to this many
-    std::array<Corner, capacity> corners;
+    Buffer<Corner, capacity> corners;
     int count = 0;
-    Vec3d normal;         ///< unit, outward; of a face only
+    Vec3d normal;          ///< unit, outward; of a face only
     bool rounded = false;  ///< the corners only sample the rim of a face, or a line of a curved side
 };
 
@@ -59,8 +59,7 @@ struct CoreView {
 
 /// What a shape's core has besides support points. The primary template is for cores without flat parts; a shape with
 /// faces, edges or a flat feature specialises it. Same members as CoreTable, on the shape itself.
-template <ConvexShape S>
-struct CoreFeatures {
+template <ConvexShape S> struct CoreFeatures {
     static constexpr bool polyhedral = false, wire = false;
     static int face_count(const S&) { return 0; }
     static CoreFace face(const S&, int) { return {}; }
@@ -74,8 +73,7 @@ struct CoreFeatures {
 };
 
 /// A point: its one feature is itself.
-template <>
-struct CoreFeatures<Sphere> {
+template <> struct CoreFeatures<Sphere> {
     static constexpr bool polyhedral = true, wire = true;
     static int face_count(const Sphere&) { return 0; }
     static CoreFace face(const Sphere&, int) { return {}; }
@@ -89,8 +87,7 @@ struct CoreFeatures<Sphere> {
 };
 
 /// A segment.
-template <>
-struct CoreFeatures<Capsule> {
+template <> struct CoreFeatures<Capsule> {
     static constexpr bool polyhedral = true, wire = true;
     static int face_count(const Capsule&) { return 0; }
     static CoreFace face(const Capsule&, int) { return {}; }
@@ -108,8 +105,7 @@ struct CoreFeatures<Capsule> {
     }
 };
 
-template <>
-struct CoreFeatures<Box> {
+template <> struct CoreFeatures<Box> {
     static constexpr bool polyhedral = true, wire = false;
     static int face_count(const Box&) { return 6; }
     static CoreFace face(const Box& box, int index);
@@ -118,8 +114,7 @@ struct CoreFeatures<Box> {
     static void feature(const Box& box, Vec3d direction, Feature& out);
 };
 
-template <>
-struct CoreFeatures<ConvexHull> {
+template <> struct CoreFeatures<ConvexHull> {
     static constexpr bool polyhedral = true, wire = false;
     static int face_count(const ConvexHull& hull) { return static_cast<int>(hull.faces.size()); }
     static CoreFace face(const ConvexHull& hull, int index);
@@ -128,10 +123,9 @@ struct CoreFeatures<ConvexHull> {
     static void feature(const ConvexHull& hull, Vec3d direction, Feature& out);
 };
 
-/// Two flat caps, sampled by 12 points of the rim that turn with the shape, and a line of the side. Its axis stands in as
-/// its only edge: the normals of the side are those at right angles to it.
-template <>
-struct CoreFeatures<Cylinder> {
+/// Two flat caps, sampled by 12 points of the rim that turn with the shape, and a line of the side. Its axis stands in
+/// as its only edge: the normals of the side are those at right angles to it.
+template <> struct CoreFeatures<Cylinder> {
     static constexpr bool polyhedral = false, wire = true;
     static int face_count(const Cylinder&) { return 2; }
     static CoreFace face(const Cylinder& cylinder, int index) {
@@ -157,8 +151,7 @@ inline constexpr CoreTable core_table{
     CoreFeatures<S>::wire};
 
 /// The view of a shape; it refers to `shape`, which must outlive it.
-template <ConvexShape S>
-[[nodiscard]] CoreView core_view(const S& shape) {
+template <ConvexShape S> [[nodiscard]] CoreView core_view(const S& shape) {
     return {&shape, &core_table<S>, shape.core_radius()};
 }
 

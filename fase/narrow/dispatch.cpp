@@ -9,13 +9,17 @@
 #include "fase/narrow/general.hpp"
 #include "fase/narrow/pairs/collide_box_box.hpp"
 #include "fase/narrow/pairs/collide_box_capsule.hpp"
+#include "fase/narrow/pairs/collide_box_convex_hull.hpp"
 #include "fase/narrow/pairs/collide_box_half_space.hpp"
 #include "fase/narrow/pairs/collide_capsule_capsule.hpp"
+#include "fase/narrow/pairs/collide_capsule_convex_hull.hpp"
 #include "fase/narrow/pairs/collide_capsule_half_space.hpp"
+#include "fase/narrow/pairs/collide_convex_hull_convex_hull.hpp"
 #include "fase/narrow/pairs/collide_convex_hull_half_space.hpp"
 #include "fase/narrow/pairs/collide_cylinder_half_space.hpp"
 #include "fase/narrow/pairs/collide_sphere_box.hpp"
 #include "fase/narrow/pairs/collide_sphere_capsule.hpp"
+#include "fase/narrow/pairs/collide_sphere_convex_hull.hpp"
 #include "fase/narrow/pairs/collide_sphere_cylinder.hpp"
 #include "fase/narrow/pairs/collide_sphere_half_space.hpp"
 #include "fase/narrow/pairs/collide_sphere_sphere.hpp"
@@ -30,8 +34,7 @@ concept HasSpecial = requires {
 };
 
 /// The special function if there is one, for (A, B) or for (B, A) turned round; else the general one.
-template <class A, class B>
-Manifold collide_best(const A& a, const B& b, const LocalPose& b_in_a, float margin) {
+template <class A, class B> Manifold collide_best(const A& a, const B& b, const LocalPose& b_in_a, float margin) {
     if constexpr (HasSpecial<A, B>) {
         return collide(a, b, b_in_a, margin);
     } else if constexpr (HasSpecial<B, A>) {
@@ -42,8 +45,7 @@ Manifold collide_best(const A& a, const B& b, const LocalPose& b_in_a, float mar
 }
 
 /// Every job of the batch has an A and a B: one indirect call a batch, none a pair.
-template <class A, class B>
-void run(std::span<const CollideJob> batch) {
+template <class A, class B> void run(std::span<const CollideJob> batch) {
     for (const CollideJob& job : batch) {
         *job.out = collide_best(*std::get_if<A>(job.a), *std::get_if<B>(job.b), job.b_in_a, job.margin);
     }
@@ -57,8 +59,7 @@ struct Entry {
 constexpr std::size_t kinds = AllShapes::count;
 using Row = std::array<Entry, kinds>;
 
-template <class... S>
-constexpr std::array<Row, kinds> make_table(ShapeList<S...>) {
+template <class... S> constexpr std::array<Row, kinds> make_table(ShapeList<S...>) {
     constexpr auto row = []<class A>(std::type_identity<A>) {
         return Row{Entry{&run<A, S>, HasSpecial<A, S> || HasSpecial<S, A>}...};
     };

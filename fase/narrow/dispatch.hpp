@@ -10,8 +10,8 @@
 namespace fase::narrow {
 
 /// The contact of any two shapes: points closer than `margin` metres (0 or more; separation <= margin). `b_in_a` takes
-/// b's frame to a's; the manifold is in a's frame, normal from a to b. No points: farther apart; or both are half-spaces.
-/// Deterministic, thread-safe, allocates nothing.
+/// b's frame to a's; the manifold is in a's frame, normal from a to b. No points: farther apart; or both are
+/// half-spaces. Deterministic, thread-safe, allocates nothing.
 [[nodiscard]] Manifold collide(const Shape& a, const Shape& b, const LocalPose& b_in_a, float margin);
 
 /// One call of collide() in a batch; `out` takes the manifold. All pointers must be valid, the `out` distinct.
@@ -23,12 +23,12 @@ struct CollideJob {
     Manifold* out = nullptr;
 };
 
-/// collide() for every job, in order. Neighbours of the same two kinds share one indirect call: jobs sorted by kinds run
-/// fastest. Same results as collide(). Thread-safe as long as no two threads write to the same `out`.
+/// collide() for every job, in order. Neighbours of the same two kinds share one indirect call: jobs sorted by kinds
+/// run fastest. Same results as collide(). Thread-safe as long as no two threads write to the same `out`.
 void collide_batch(std::span<const CollideJob> jobs);
 
-/// Is there a function of its own for these kinds of shape (indices into AllShapes, in this order or the other), or does
-/// the general path do it? False for indices past the list.
+/// Is there a function of its own for these kinds of shape (indices into AllShapes, in this order or the other), or
+/// does the general path do it? False for indices past the list.
 [[nodiscard]] bool has_special_pair(std::size_t kind_a, std::size_t kind_b);
 
 }  // namespace fase::narrow

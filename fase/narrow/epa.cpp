@@ -1,6 +1,7 @@
 /// Penetration of two cores of which one is curved, by growing a polytope inside their Minkowski difference (EPA).
 #include "fase/narrow/epa.hpp"
 
+#include <array>
 #include <limits>
 
 namespace fase::narrow {
@@ -96,22 +97,21 @@ private:
         rim_[rim_count_++] = {from, to};
     }
 
-    std::array<Vec3d, corner_capacity> corners_;
-    std::array<Triangle, face_capacity> triangles_;
-    std::array<std::array<Index, 2>, 3 * face_capacity> rim_;
+    Buffer<Vec3d, corner_capacity> corners_;
+    Buffer<Triangle, face_capacity> triangles_;
+    Buffer<std::array<Index, 2>, 3 * face_capacity> rim_;
     std::size_t corner_count_ = 0, triangle_count_ = 0, rim_count_ = 0;
 };
 
 /// A few points of the Minkowski difference, of which four that are not flat make the first tetrahedron.
 struct Cloud {
-    std::array<Vec3d, 16> points;
+    Buffer<Vec3d, 20> points;
     std::size_t count = 0;
 
     void add(Vec3d p) { points[count++] = p; }
 
     /// Moves to place `index` the point that scores highest; the score, which is 0 when none is left.
-    template <class Score>
-    double pick(std::size_t index, Score&& score) {
+    template <class Score> double pick(std::size_t index, Score&& score) {
         double best_score = 0;
         std::size_t best = index;
         for (std::size_t i = index; i < count; ++i) {
@@ -131,8 +131,7 @@ struct Cloud {
 Penetration epa(const CoreView& a, const CoreView& b, const TransformD& b_in_a, const Simplex& start,
                 const Penetration& known, const EpaOptions& options) {
     const auto support = [&](Vec3d direction) {
-        return a.support(direction) -
-               transform(b_in_a, b.support(transpose_times(b_in_a.rotation, -direction)));
+        return a.support(direction) - transform(b_in_a, b.support(transpose_times(b_in_a.rotation, -direction)));
     };
     Penetration best = known;
     best.state = Penetration::State::Limit;
@@ -144,11 +143,9 @@ Penetration epa(const CoreView& a, const CoreView& b, const TransformD& b_in_a, 
 
     Cloud cloud;
     for (int i = 0; i < start.count; ++i) cloud.add(start.corners[static_cast<std::size_t>(i)].difference);
-    for (const Vec3d axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
-        cloud.add(support(axis));
-        cloud.add(support(-axis));
-    }
-    if (has_known) cloud.add(support(known.normal));
+    // Around the way out that is known: mostly it is the answer, and these points prove it.
+    const Vec3d n = best.normal, u = any_perpendicular(n), w = cross(n, u);
+    for (const Vec3d direction : {n + u, n - u, n + w, n - w, n, -n}) cloud.add(support(direction));
     const auto& p = cloud.points;
     const double length_01 = cloud.pick(1, [&](Vec3d q) { return length_squared(q - p[0]); });
     if (!(length_01 > 0)) return best;
@@ -167,10 +164,10 @@ Penetration epa(const CoreView& a, const CoreView& b, const TransformD& b_in_a, 
     if (!(volume > 1e-14 * length(plane) * scale)) {
         // Flat: the way out at right angles to the plane costs next to nothing.
         const Vec3d normal = normalized(plane);
-        for (const Vec3d n : {normal, -normal}) {
-            const double depth = dot(n, support(n));
-            if (length_squared(n) > 0 && depth + options.bias < best.depth) {
-                best = {n, depth, Penetration::Source::Curve, Penetration::State::Limit};
+        for (const Vec3d way : {normal, -normal}) {
+            const double depth = dot(way, support(way));
+            if (length_squared(way) > 0 && depth + options.bias < best.depth) {
+                best = {way, depth, Penetration::Source::Curve, Penetration::State::Limit};
             }
         }
         return best;
@@ -184,7 +181,8 @@ Penetration epa(const CoreView& a, const CoreView& b, const TransformD& b_in_a, 
     while (true) {
         const Triangle nearest = polytope.triangle(polytope.nearest());
         if (!(nearest.offset < infinity)) return best;
-        if (best.depth - nearest.offset <= options.tolerance + (best.source == Penetration::Source::Curve ? 0 : options.bias)) {
+        if (best.depth - nearest.offset <=
+            options.tolerance + (best.source == Penetration::Source::Curve ? 0 : options.bias)) {
             best.state = Penetration::State::Close;
             return best;
         }

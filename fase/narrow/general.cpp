@@ -1,6 +1,7 @@
 /// The contact of any two shapes, by GJK, SAT or EPA and clipping.
 #include "fase/narrow/general.hpp"
 
+#include <array>
 #include <limits>
 
 #include "fase/narrow/clip.hpp"
@@ -11,8 +12,9 @@ namespace fase::narrow {
 namespace {
 
 constexpr std::uint32_t reference_is_b = 1u << 31, few_points = 1u << 30;
-/// A face takes part as reference when its normal is within 5.7 degrees of the contact's.
-constexpr double aligned = 0.995;
+/// A face takes part as reference when its normal is within 5.7 degrees of the contact's; of 0.8 degrees, when one of
+/// the shapes is rounded, for then a slanted normal ends far from the foot of a point.
+constexpr double aligned_sharp = 0.995, aligned_rounded = 0.9999;
 
 /// The feature of a shape in direction `outward`, all in the frame that `pose` leads to.
 Feature feature_in(const CoreView& view, const TransformD& pose, Vec3d outward) {
@@ -32,7 +34,7 @@ struct Candidates {
         double separation = 0;
         std::uint32_t name = 0;
     };
-    std::array<Point, ClipPolygon::capacity + 2> points;
+    Buffer<Point, ClipPolygon::capacity + 2> points;
     int count = 0;
 
     void add(Vec3d at, double separation, std::uint32_t name) {
@@ -79,7 +81,7 @@ struct Candidates {
                 count, [&](int i) { return static_cast<float>(dot(u, at(i))); },
                 [&](int i) { return static_cast<float>(dot(v, at(i))); },
                 [&](int i) { return static_cast<float>(points[static_cast<std::size_t>(i)].separation); },
-                static_cast<float>(1e-6 * size), chosen);
+                static_cast<float>(1e-4 * size), chosen);
         }
         manifold.count = kept;
         for (std::size_t i = 0; i < static_cast<std::size_t>(kept); ++i) {
@@ -128,6 +130,7 @@ public:
         const Feature on_a = feature_in(a_, {}, normal_), on_b = feature_in(b_, b_in_a_, -normal_);
         Candidates found;
         if (on_a.count > 1 && on_b.count > 1) {
+            const double aligned = a_.radius + b_.radius > 0 ? aligned_rounded : aligned_sharp;
             const double face_a = on_a.count > 2 ? dot(on_a.normal, normal_) : -1;
             const double face_b = on_b.count > 2 ? -dot(on_b.normal, normal_) : -1;
             if (face_a >= aligned && face_a >= face_b - 1e-4) {
@@ -139,7 +142,8 @@ public:
             }
             found.drop_above(margin_);
         }
-        // Where the features miss the deepest place (rounded shapes, slanted faces), the closest points themselves count.
+        // Where the features miss the deepest place (rounded shapes, slanted faces), the closest points themselves
+        // count.
         const bool missed = found.count == 0 || found.least() > separation_ + 1e-3 * gjk_.scale + 0.1 * margin_;
         if (missed) {
             add_closest(few_points | edge_of(on_a, normal_).name() << 15 | edge_of(on_b, -normal_).name(), found);

@@ -1,16 +1,17 @@
 #pragma once
-/// The contact of any two shapes, by GJK, SAT or EPA and clipping: for pairs without a function of their own, and their judge.
+/// The contact of any two shapes, by GJK, SAT or EPA and clipping: for pairs without a function of their own, and their
+/// judge.
 #include "fase/math/pose.hpp"
 #include "fase/narrow/core_view.hpp"
 #include "fase/narrow/manifold.hpp"
 
 namespace fase::narrow {
 
-/// The contact of two convex shapes. Frames, margin and result as in collide(). The normal is that of the closest points
-/// while the cores are apart, and the shortest way out when they overlap, where faces win over edges that are not better
-/// by a ten-thousandth of the shapes' size. Separations are measured along the normal. Names of points (features): bit
-/// 31: the reference face is b's; bit 30: a single point or two parallel edges; else 2 × 15 bits for what meets.
-/// Deterministic, thread-safe, allocates nothing.
+/// The contact of two convex shapes. Frames, margin and result as in collide(). The normal is that of the closest
+/// points while the cores are apart, and the shortest way out when they overlap, where faces win over edges that are
+/// not better by a ten-thousandth of the shapes' size. Separations are measured along the normal. Names of points
+/// (features): bit 31: the reference face is b's; bit 30: a single point or two parallel edges; else 2 × 15 bits for
+/// what meets. Deterministic, thread-safe, allocates nothing.
 [[nodiscard]] Manifold collide_cores(const CoreView& a, const CoreView& b, const LocalPose& b_in_a, float margin);
 
 /// The contact of a half-space (a) with a convex shape (b): the corners of b's lowest feature.

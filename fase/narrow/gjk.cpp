@@ -1,6 +1,8 @@
 /// The distance of two convex cores (GJK).
 #include "fase/narrow/gjk.hpp"
 
+#include <optional>
+
 namespace fase::narrow {
 namespace {
 
@@ -134,7 +136,7 @@ void keep(Simplex& simplex, const Closest& closest) {
     for (int i = 0; i < simplex.count; ++i) {
         const double weight = closest.weight[static_cast<std::size_t>(i)];
         if (!(weight > 0)) continue;
-        simplex.corners[static_cast<std::size_t>(kept)] = simplex.corners[static_cast<std::size_t>(i)];
+        if (kept < i) simplex.corners[static_cast<std::size_t>(kept)] = simplex.corners[static_cast<std::size_t>(i)];
         simplex.corners[static_cast<std::size_t>(kept++)].weight = weight;
     }
     simplex.count = kept;
@@ -159,6 +161,13 @@ double size_squared(const SimplexCorner& corner) {
     const double difference = length_squared(corner.difference), larger = a > b ? a : b;
     return larger > difference ? larger : difference;
 }
+
+/// Where a round without visible progress began.
+struct Before {
+    Simplex simplex;
+    Vec3d v;
+    double squared = 0, gap = 0;
+};
 
 bool holds(const Simplex& simplex, Vec3d difference) {
     for (int i = 0; i < simplex.count; ++i) {
@@ -186,11 +195,7 @@ GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, co
     simplex.count = 1;
     Vec3d v = simplex.corners[0].difference;
     double squared = length_squared(v), scale_squared = size_squared(simplex.corners[0]);
-    struct {
-        Simplex simplex;
-        Vec3d v;
-        double squared = 0, gap = 0;
-    } before;
+    std::optional<Before> before;
     bool stalled = false;
     for (; result.iterations < most_rounds; ++result.iterations) {
         // Within rounding of the origin.
@@ -205,23 +210,25 @@ GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, co
         const double size = size_squared(corner);
         if (size > scale_squared) scale_squared = size;
         const double gap = squared - progress;
-        if (stalled && !(gap < before.gap)) {
-            simplex = before.simplex;
-            v = before.v;
-            squared = before.squared;
+        if (stalled && !(gap < before->gap)) {
+            simplex = before->simplex;
+            v = before->v;
+            squared = before->squared;
             break;
         }
         if (gap <= options.tolerance * squared || holds(simplex, corner.difference)) break;
-        Simplex grown = simplex;
-        grown.corners[static_cast<std::size_t>(grown.count++)] = corner;
-        const Closest closest = ClosestPoint(grown).find();
+        simplex.corners[static_cast<std::size_t>(simplex.count++)] = corner;
+        const Closest closest = ClosestPoint(simplex).find();
         // Rounding may eat the progress in length while the direction still gets better: then the gap decides.
         constexpr double noise = 1e-14;
-        if (!(closest.squared <= squared * (1 + noise))) break;
         stalled = !(closest.squared < squared * (1 - noise));
-        if (stalled) before = {simplex, v, squared, gap};
-        keep(grown, closest);
-        simplex = grown;
+        if (stalled) {
+            --simplex.count;
+            if (!(closest.squared <= squared * (1 + noise))) break;
+            before = Before{simplex, v, squared, gap};
+            ++simplex.count;
+        }
+        keep(simplex, closest);
         v = closest.point;
         squared = closest.squared;
         if (squared == 0) break;

@@ -1,5 +1,6 @@
 #pragma once
 /// The distance of two convex cores (GJK).
+#include <array>
 #include <limits>
 
 #include "fase/math/transform_d.hpp"
@@ -42,10 +43,12 @@ struct GjkResult {
     int iterations = 0;
 };
 
-/// The closest points of two cores (radii are left out). `b_in_a` takes b's points to a's frame. Always ends: each round
-/// must come closer, and there are at most 128. Thread-safe, allocates nothing; about 10 support calls for polyhedra.
-/// Source: Gilbert, Johnson, Keerthi 1988, A fast procedure for computing the distance between complex objects; with the
-/// sub-algorithm by signed volumes of Montanari, Petrinic, Barbieri 2017, Improving the GJK algorithm.
-[[nodiscard]] GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, const GjkOptions& options = {});
+/// The closest points of two cores (radii are left out). `b_in_a` takes b's points to a's frame. Always ends: each
+/// round must come closer, and there are at most 128. Thread-safe, allocates nothing; about 10 support calls for
+/// polyhedra. Source: Gilbert, Johnson, Keerthi 1988, A fast procedure for computing the distance between complex
+/// objects; with the sub-algorithm by signed volumes of Montanari, Petrinic, Barbieri 2017, Improving the GJK
+/// algorithm.
+[[nodiscard]] GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a,
+                            const GjkOptions& options = {});
 
 }  // namespace fase::narrow

@@ -8,9 +8,9 @@ namespace fase::narrow {
 struct Penetration {
     enum class Source { FaceOfA, FaceOfB, Edges, Curve };
     enum class State {
-        Exact,    ///< least depth, to rounding
-        Close,    ///< least depth, to the tolerance that was asked for
-        Limit,    ///< the work limit was reached: a valid way out, perhaps not quite the shortest
+        Exact,  ///< least depth, to rounding
+        Close,  ///< least depth, to the tolerance that was asked for
+        Limit,  ///< the work limit was reached: a valid way out, perhaps not quite the shortest
     };
     Vec3d normal{0, 1, 0};  ///< unit, from a to b
     double depth = 0;       ///< metres; below 0: the cores are apart by at least that much
@@ -18,7 +18,8 @@ struct Penetration {
     State state = State::Exact;
 };
 
-/// The width of the overlap of two cores along the unit `normal` (from a to b, a's frame): moving b by it separates them.
+/// The width of the overlap of two cores along the unit `normal` (from a to b, a's frame): moving b by it separates
+/// them.
 [[nodiscard]] inline double depth_along(const CoreView& a, const CoreView& b, const TransformD& b_in_a, Vec3d normal) {
     const Vec3d on_b = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, -normal)));
     return dot(normal, a.support(normal) - on_b);
@@ -34,8 +35,9 @@ struct PenetrationOptions {
 [[nodiscard]] Penetration penetration(const CoreView& a, const CoreView& b, const TransformD& b_in_a,
                                       const Simplex& start, const PenetrationOptions& options = {});
 
-/// GJK on the cores after the move by `way` and a little farther (a fiftieth of `scale`, GjkResult::scale): the points that
-/// touch after the move stay closest on the way on, and there GJK sees them best. Frame of a; `on_b` is of the moved b.
+/// GJK on the cores after the move by `way` and a little farther (a fiftieth of `scale`, GjkResult::scale): the points
+/// that touch after the move stay closest on the way on, and there GJK sees them best. Frame of a; `on_b` is of the
+/// moved b.
 [[nodiscard]] GjkResult moved_apart(const CoreView& a, const CoreView& b, const TransformD& b_in_a,
                                     const Penetration& way, double scale, double tolerance = 1e-15);
 

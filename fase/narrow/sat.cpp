@@ -1,6 +1,7 @@
 /// Exact penetration of two polyhedra, by the separating-axis test.
 #include "fase/narrow/sat.hpp"
 
+#include <array>
 #include <limits>
 
 namespace fase::narrow {
@@ -22,7 +23,7 @@ public:
     /// Edges of b are read in blocks, so that nothing is allocated and each is fetched once a block.
     void run() {
         constexpr int block = 48;
-        std::array<MappedEdge, block> edges_b;
+        Buffer<MappedEdge, block> edges_b;
         const int count_a = a_.table->edge_count(a_.shape), count_b = b_.table->edge_count(b_.shape);
         for (int begin = 0; begin < count_b; begin += block) {
             const int size = count_b - begin < block ? count_b - begin : block;
@@ -41,21 +42,33 @@ private:
                 transpose_times(r, edge.right)};
     }
 
-    template <std::size_t N>
-    void against(const CoreEdge& edge, const std::array<MappedEdge, N>& edges_b, int size) {
+    template <std::size_t N> void against(const CoreEdge& edge, const Buffer<MappedEdge, N>& edges_b, int size) {
         const bool wire = a_.table->wire || b_.table->wire;
         const Vec3d across = cross(edge.right, edge.left);
         for (int i = 0; i < size; ++i) {
             const MappedEdge& other = edges_b[static_cast<std::size_t>(i)];
-            if (!wire && !arcs_cross(edge, across, other)) continue;
+            if (a_.table->wire != b_.table->wire) {
+                // The normals of a wire fill a great circle: does the arc of the other edge cross it?
+                const Vec3d& along = a_.table->wire ? edge.along : other.edge.along;
+                const CoreEdge& bounded = a_.table->wire ? other.edge : edge;
+                if (!(dot(bounded.left, along) * dot(bounded.right, along) < 0)) continue;
+            } else if (!wire && !arcs_cross(edge, across, other)) {
+                continue;
+            }
             const Vec3d axis = cross(edge.along, other.edge.along);
             const double squared = length_squared(axis);
             const double bound = length_squared(edge.along) * length_squared(other.edge.along);
             if (!(squared > 1e-20 * bound)) continue;
             Vec3d normal = axis * (1 / std::sqrt(squared));
-            if (wire) {
+            if (a_.table->wire && b_.table->wire) {
                 consider(normal);
                 consider(-normal);
+                continue;
+            }
+            if (wire) {
+                // Outward of the one edge that has faces.
+                const Vec3d outward = a_.table->wire ? -(other.edge.left + other.edge.right) : edge.left + edge.right;
+                consider(dot(normal, outward) < 0 ? -normal : normal);
                 continue;
             }
             if (dot(normal, edge.left + edge.right) < 0) normal = -normal;

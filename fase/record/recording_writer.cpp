@@ -67,10 +67,23 @@ Result<std::uint32_t> RecordingWriter::add_row(std::size_t table, const Row& row
 template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const RecordedShape&);
 template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const RecordedMesh&);
 template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const RecordedBody&);
-template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const RecordedCollider&);
-template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const RecordedVisual&);
+
+Result<std::uint32_t> RecordingWriter::add(const RecordedCollider& collider) {
+    if (collider.body >= tables_[2].rows || collider.shape >= tables_[0].rows) {
+        return Error{Status::BadArgument, "RecordedCollider", "names a body or a shape that was not added", {}};
+    }
+    return add_row(3, collider);
+}
+
+Result<std::uint32_t> RecordingWriter::add(const RecordedVisual& visual) {
+    if (visual.body >= tables_[2].rows || visual.mesh >= tables_[1].rows) {
+        return Error{Status::BadArgument, "RecordedVisual", "names a body or a mesh that was not added", {}};
+    }
+    return add_row(4, visual);
+}
 
 Result<void> RecordingWriter::end_collider(std::uint32_t row) {
+    if (row >= tables_[3].rows) return Error{Status::BadArgument, "end_collider", "names a collider that was not added", {}};
     const Result<std::uint32_t> added = add_row(5, ColliderEnd{row, frames()});
     if (!added) return added.error();
     return {};

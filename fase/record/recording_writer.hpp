@@ -36,12 +36,12 @@ public:
     RecordingWriter& operator=(RecordingWriter&&) noexcept = default;
     ~RecordingWriter() = default;
 
-    // Rows: the number of the new row, or Capacity when the table is full (2^21 rows).
+    // Rows: the number of the new row; Capacity when the table is full (2^21 rows), BadArgument when it names a row that is not there.
     Result<std::uint32_t> add(const RecordedShape& shape) { return add_row(0, shape); }
     Result<std::uint32_t> add(const RecordedMesh& mesh) { return add_row(1, mesh); }
     Result<std::uint32_t> add(const RecordedBody& body) { return add_row(2, body); }
-    Result<std::uint32_t> add(const RecordedCollider& collider) { return add_row(3, collider); }
-    Result<std::uint32_t> add(const RecordedVisual& visual) { return add_row(4, visual); }
+    Result<std::uint32_t> add(const RecordedCollider& collider);
+    Result<std::uint32_t> add(const RecordedVisual& visual);
     /// The collider is gone from the next block on.
     Result<void> end_collider(std::uint32_t row);
 

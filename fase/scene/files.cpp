@@ -6,9 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -71,7 +70,8 @@ std::optional<std::string> percent_decoded(std::string_view text) {
             out += text[i];
             continue;
         }
-        const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1, low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
+        const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1,
+                  low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
         if (high < 0 || low < 0) return std::nullopt;
         out += static_cast<char>(high * 16 + low);
         i += 2;
@@ -113,25 +113,36 @@ std::string folder_of(const std::string& path) {
     return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t most) {
+Result<FileStart> read_start(const std::string& path, std::size_t count) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (!file.good()) return io_error(path, "open");
     struct stat about = {};
     if (::fstat(file.number(), &about) != 0) return io_error(path, "open");
-    if (!S_ISREG(about.st_mode)) return Error{Status::Format, path, fmt::format("found {}, need a regular file", kind_of(about.st_mode)), {}};
-    const auto size = static_cast<std::size_t>(about.st_size);
-    if (size > most) return Error{Status::Format, path, fmt::format("found {} bytes, need at most {}", size, most), {}};
-    std::vector<std::byte> bytes(size);
+    if (!S_ISREG(about.st_mode))
+        return Error{Status::Format, path, fmt::format("found {}, need a regular file", kind_of(about.st_mode)), {}};
+    FileStart start;
+    start.size = static_cast<std::uint64_t>(about.st_size);
+    start.bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(start.size, count)));
     std::size_t filled = 0;
-    while (filled < size) {
-        const ssize_t got = ::read(file.number(), bytes.data() + filled, size - filled);
+    while (filled < start.bytes.size()) {
+        const ssize_t got = ::read(file.number(), start.bytes.data() + filled, start.bytes.size() - filled);
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return io_error(path, "read");
         if (got == 0) break;
         filled += static_cast<std::size_t>(got);
     }
-    bytes.resize(filled);
-    return bytes;
+    start.bytes.resize(filled);
+    return start;
+}
+
+Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t most) {
+    const Result<FileStart> head = read_start(path, 0);
+    if (!head) return head.error();
+    if (head->size > most)
+        return Error{Status::Format, path, fmt::format("found {} bytes, need at most {}", head->size, most), {}};
+    Result<FileStart> whole = read_start(path, most);
+    if (!whole) return whole.error();
+    return std::move(whole->bytes);
 }
 
 Result<std::string> resolve_uri(const std::string& folder, std::string_view uri) {
@@ -139,21 +150,25 @@ Result<std::string> resolve_uri(const std::string& folder, std::string_view uri)
     const std::optional<std::string> path = percent_decoded(uri);
     if (!path) return refused("found a % that no two hexadecimal digits follow, need a valid uri");
     if (const std::string_view objection = objection_to(*path); !objection.empty()) {
-        return refused(fmt::format("found {} in the uri, need a relative path that stays in the model's folder", objection));
+        return refused(
+            fmt::format("found {} in the uri, need a relative path that stays in the model's folder", objection));
     }
     const std::optional<std::string> root = real_path(folder), real = real_path(folder + "/" + *path);
     if (!root || !real) return refused("found the name of a file that does not exist, need one in the model's folder");
     const std::string inside = *root == "/" ? *root : *root + "/";
-    if (!real->starts_with(inside)) return refused("found a link that leads out of the model's folder, need a file in it");
+    if (!real->starts_with(inside))
+        return refused("found a link that leads out of the model's folder, need a file in it");
     return *real;
 }
 
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const auto refused = [](std::string problem) { return Error{Status::Format, {}, std::move(problem), {}}; };
     const std::size_t comma = uri.find(',');
-    if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64")) return refused("found a data uri of another form, need \"data:…;base64,…\"");
+    if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64"))
+        return refused("found a data uri of another form, need \"data:…;base64,…\"");
     const std::string_view text = uri.substr(comma + 1);
-    if (text.size() % 4 != 0) return refused(fmt::format("found base64 of {} characters, need a multiple of 4", text.size()));
+    if (text.size() % 4 != 0)
+        return refused(fmt::format("found base64 of {} characters, need a multiple of 4", text.size()));
     const auto value_of = [](char c) {
         if (c >= 'A' && c <= 'Z') return c - 'A';
         if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -167,7 +182,9 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     std::uint32_t group = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const int value = i < text.size() - padding ? value_of(text[i]) : 0;
-        if (value < 0) return refused(fmt::format("found the byte {:#04x} at {} of the base64 text, need A-Z, a-z, 0-9, +, /", static_cast<unsigned char>(text[i]), i));
+        if (value < 0)
+            return refused(fmt::format("found the byte {:#04x} at {} of the base64 text, need A-Z, a-z, 0-9, +, /",
+                                       static_cast<unsigned char>(text[i]), i));
         group = group << 6 | static_cast<std::uint32_t>(value);
         if (i % 4 != 3) continue;
         for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<std::byte>(group >> shift & 0xff));
@@ -184,7 +201,8 @@ std::string encode_base64(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t group = 0;
         const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
         for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
     }
     return text;

@@ -82,17 +82,22 @@ public:
     bool end_object() { return (!options_.unique_keys || keys_are_unique()) && end(); }
     bool end_array() { return end(); }
     bool parse_error(std::size_t, const std::string& token, const Source::exception& exception) {
-        if (exception.id == 406) return refuse("found the number " + quoted_short(token) + ", need one that fits a double");
+        if (exception.id == 406)
+            return refuse("found the number " + quoted_short(token) + ", need one that fits a double");
         if (token.empty() || token == "<end of input>" || token == "<U+0000>") {
-            return refuse(*taken_ == 0 || token == "<end of input>" ? "found the end of the text, need a JSON value complete"
-                                                                   : "found no valid JSON");
+            return refuse(*taken_ == 0 || token == "<end of input>"
+                              ? "found the end of the text, need a JSON value complete"
+                              : "found no valid JSON");
         }
         return refuse("found " + quoted_short(token) + ", need valid JSON here");
     }
 
     Result<JsonDocument> finish(bool complete) {
         if (!problem_.empty() || !complete) {
-            return Error{Status::Format, "byte " + std::to_string(*taken_), problem_.empty() ? "found no valid JSON" : problem_, {}};
+            return Error{Status::Format,
+                         "byte " + std::to_string(*taken_),
+                         problem_.empty() ? "found no valid JSON" : problem_,
+                         {}};
         }
         return std::move(document_);
     }
@@ -107,7 +112,8 @@ private:
     }
     bool start(JsonKind kind) {
         if (static_cast<int>(open_.size()) >= options_.depth) {
-            return refuse(fmt::format("found arrays and objects nested deeper than {}, need at most {}", options_.depth, options_.depth));
+            return refuse(fmt::format("found arrays and objects nested deeper than {}, need at most {}", options_.depth,
+                                      options_.depth));
         }
         add(kind, 0);
         open_.push_back(static_cast<std::uint32_t>(document_.nodes_.size() - 1));
@@ -129,7 +135,8 @@ private:
         }
         std::sort(keys_.begin(), keys_.end());
         const auto twice = std::adjacent_find(keys_.begin(), keys_.end());
-        return twice == keys_.end() || refuse("found the key " + quoted_short(*twice) + " twice in one object, need it once");
+        return twice == keys_.end() ||
+               refuse("found the key " + quoted_short(*twice) + " twice in one object, need it once");
     }
     bool refuse(std::string problem) {
         problem_ = std::move(problem);
@@ -147,15 +154,21 @@ private:
 
 Result<JsonDocument> parse_json(std::string_view text, const JsonOptions& options) {
     if (text.size() >= std::numeric_limits<std::uint32_t>::max()) {
-        return Error{Status::Format, "byte 0", fmt::format("found {} bytes of JSON, need less than 4 GiB", text.size()), {}};
+        return Error{
+            Status::Format, "byte 0", fmt::format("found {} bytes of JSON, need less than 4 GiB", text.size()), {}};
     }
     if (text.starts_with("\xef\xbb\xbf")) {
-        return Error{Status::Format, "byte 0", "found a byte order mark, need JSON without one", "save it as UTF-8 without BOM"};
+        return Error{Status::Format, "byte 0", "found a byte order mark, need JSON without one",
+                     "save it as UTF-8 without BOM"};
+    }
+    if (const std::size_t at = text.find('\0'); at != text.npos) {  // which nlohmann-json takes for the end
+        return Error{Status::Format, "byte " + std::to_string(at), "found a NUL byte, need valid JSON here", {}};
     }
     std::size_t taken = 0;
     JsonBuilder builder(options, &taken);
     const char* const begin = text.data();
-    const bool complete = nlohmann::json::sax_parse(CountingIterator(begin, &taken), CountingIterator(begin + text.size(), &taken), &builder);
+    const bool complete = nlohmann::json::sax_parse(CountingIterator(begin, &taken),
+                                                    CountingIterator(begin + text.size(), &taken), &builder);
     return builder.finish(complete);
 }
 
@@ -205,14 +218,17 @@ std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = byte(0);
     if (first < 0x80) return 1;
-    const std::size_t length = first >= 0xc2 && first < 0xe0 ? 2 : (first & 0xf0) == 0xe0 ? 3 : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+    const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
+                               : (first & 0xf0) == 0xe0        ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
     if (length == 0 || text.size() < length) return 0;
     for (std::size_t i = 1; i < length; ++i) {
         if ((byte(i) & 0xc0) != 0x80) return 0;
     }
     const unsigned char second = byte(1);
-    const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
-                       (first == 0xf4 && second > 0x8f);
+    const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+                       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
     return wrong ? 0 : length;
 }
 

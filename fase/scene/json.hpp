@@ -17,8 +17,9 @@ enum class JsonKind : std::uint8_t { Null, False, True, Number, String, Array, O
 [[nodiscard]] std::string_view name_of(JsonKind kind);
 
 struct JsonOptions {
-    int depth = 128;          ///< most arrays and objects inside each other
-    bool unique_keys = true;  ///< refuse an object that has the same key twice (glTF 2.0 section 2.7); else the first counts
+    int depth = 128;  ///< most arrays and objects inside each other
+    bool unique_keys =
+        true;  ///< refuse an object that has the same key twice (glTF 2.0 section 2.7); else the first counts
 };
 
 class JsonValue;
@@ -62,14 +63,13 @@ public:
     [[nodiscard]] std::string pointer() const;
 
     /// Calls f(value) for each element of an array, in order.
-    template <class F>
-    void for_each_element(F&& f) const {
+    template <class F> void for_each_element(F&& f) const {
         if (!is(JsonKind::Array)) return;
-        for (std::uint32_t at = index_ + 1; at < node().end; at = document_->nodes_[at].end) f(JsonValue(document_, at));
+        for (std::uint32_t at = index_ + 1; at < node().end; at = document_->nodes_[at].end)
+            f(JsonValue(document_, at));
     }
     /// Calls f(key, value) for each member of an object, in order.
-    template <class F>
-    void for_each_member(F&& f) const {
+    template <class F> void for_each_member(F&& f) const {
         if (!is(JsonKind::Object)) return;
         for (std::uint32_t at = index_ + 1; at < node().end; at = document_->nodes_[at + 1].end) {
             f(JsonValue(document_, at).string(), JsonValue(document_, at + 1));
@@ -86,8 +86,9 @@ private:
 
 inline JsonValue JsonDocument::root() const { return {this, 0}; }
 
-/// Reads a text. Format, with "byte N" as `where`, for anything that RFC 8259 does not allow, a byte order mark, a number that does not
-/// fit a double, nesting deeper than the options say, a key given twice, or 4 GiB and more. Allocation failures throw.
+/// Reads a text. Format, with "byte N" as `where`, for anything that RFC 8259 does not allow, a byte order mark, a
+/// number that does not fit a double, nesting deeper than the options say, a key given twice, or 4 GiB and more.
+/// Allocation failures throw.
 Result<JsonDocument> parse_json(std::string_view text, const JsonOptions& options = {});
 
 /// `text` in double quotes, control characters and broken UTF-8 escaped: fit for a message or a JSON file.

@@ -36,6 +36,15 @@ Result<void> check_def(const ColliderDef& def) {
     return check(def.material);
 }
 
+Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef& def) {
+    if (auto checked = check(shape); !checked) return checked;
+    if (auto checked = check_def(def); !checked) return checked;
+    if (kind == BodyKind::Dynamic && std::holds_alternative<HalfSpace>(shape) && !def.sensor)
+        return refused("World::add_collider", "a half-space on a dynamic body", "a shape with a mass",
+                       "make the body static or kinematic");
+    return {};
+}
+
 void insert_sorted(std::vector<std::uint32_t>& list, std::uint32_t value) {
     list.insert(std::lower_bound(list.begin(), list.end(), value), value);
 }
@@ -146,6 +155,7 @@ Result<BodyId> World::add_body(const BodyDef& def) {
 }
 
 Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider) {
+    if (auto checked = check_collider(def.kind, shape, collider); !checked) return checked.error();
     const auto body = add_body(def);
     if (!body) return body;
     if (auto added = add_collider(*body, shape, collider); !added) {
@@ -154,17 +164,14 @@ Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const Col
     }
     // The collider may have moved the centre of mass: the velocity given is the centre's.
     if (def.kind != BodyKind::Static) state_->bodies.motion[body->index].linear_velocity = def.linear_velocity;
+    if (!def.awake) std::erase(state_->wake_wanted, body->index);
     return body;
 }
 
 Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const ColliderDef& def) {
     if (!contains(body)) return stale_id("World::add_collider");
-    if (auto checked = check(shape); !checked) return checked.error();
-    if (auto checked = check_def(def); !checked) return checked.error();
-    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-    if (traits.kind == BodyKind::Dynamic && std::holds_alternative<HalfSpace>(shape) && !def.sensor)
-        return refused("World::add_collider", "a half-space on a dynamic body", "a shape with a mass",
-                       "make the body static or kinematic");
+    const BodyKind kind = state_->bodies.traits[body.index].kind;
+    if (auto checked = check_collider(kind, shape, def); !checked) return checked.error();
     try {
         want_awake(*state_, body.index);
         return make_collider(*state_, body.index, shape, def);

@@ -14,6 +14,8 @@ Result<void> check_vector(Vec3 v, const char* where) {
     if (is_finite(v)) return {};
     return refused(where, "a number that is not finite", "three finite numbers");
 }
+/// Whether the speed can be squared: beyond 1e19 nothing can be meant.
+bool is_speed(Vec3 v) { return std::isfinite(length_squared(v)); }
 Error not_dynamic(const char* where) {
     return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
 }
@@ -91,6 +93,8 @@ Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
     const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
     if (traits.kind == BodyKind::Static)
         return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
+    if (!is_speed(linear) || !is_speed(angular))
+        return refused("World::set_velocity", "a speed above 1e19", "one that a body can have");
     dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     motion.linear_velocity = linear;
     motion.angular_velocity = angular;
@@ -154,7 +158,11 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
 Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& mass) {
     if (!contains(body)) return stale_id("World::set_mass");
     if (mass)
-        if (auto checked = check(*mass); !checked) return checked;
+        if (auto checked = check(*mass); !checked) {
+            Error error = checked.error();
+            error.where = "World::set_mass: " + error.where;
+            return error;
+        }
     dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
     traits.mass_given = mass.has_value();
     if (mass) traits.mass = *mass;
@@ -284,7 +292,7 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
     const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
     const Vec3 angular = motion.angular_velocity +
                          inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
-    if (!is_finite(linear) || !is_finite(angular))
+    if (!is_speed(linear) || !is_speed(angular))
         return refused("World::apply_impulse", "an impulse that makes the velocity infinite", "a smaller one");
     motion.linear_velocity = linear;
     motion.angular_velocity = angular;
@@ -300,7 +308,7 @@ Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds
     if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_angular_impulse");
     dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     const Vec3 angular = motion.angular_velocity + inverse_inertia_times(traits, motion, newton_metre_seconds);
-    if (!is_finite(angular))
+    if (!is_speed(angular))
         return refused("World::apply_angular_impulse", "an impulse that makes the velocity infinite", "a smaller one");
     motion.angular_velocity = angular;
     motion.sleep_time = 0;

@@ -17,12 +17,12 @@ struct Settings {
 
     // Contacts. Soft contacts are springs in time, so they act alike at any mass. Source: Catto 2011, Soft constraints; Catto 2024,
     // Solver2D ("soft step").
-    float contact_frequency = 30;        ///< Hz, at most a quarter of the sub-step rate is used; higher: harder
+    float contact_frequency = 45;        ///< Hz, at most a quarter of the sub-step rate is used; higher: harder
     float contact_damping_ratio = 10;    ///< 1 is critical; above: sinks out slowly without bounce
     float push_out_speed = 3;            ///< m/s at most, at which overlap is undone (length)
     float restitution_threshold = 0.1f;  ///< m/s of approach below which nothing bounces (length)
     float speculative_distance = 0.02f;  ///< contacts are made this far before touch (length)
-    float linear_slop = 0.005f;          ///< overlap that is left in peace, so that resting contacts stay (length)
+    float linear_slop = 0.005f;          ///< what counts as touching and as staying in place (length)
     float contact_reuse_distance = 0.01f;///< a manifold of several points is kept while its bodies moved less against each other (length);
                                          ///< 0: made anew each step
 
@@ -33,7 +33,7 @@ struct Settings {
     bool sleep = true;                   ///< islands at rest fall asleep
     float sleep_linear_speed = 0.05f;    ///< m/s, a body slower than this …
     float sleep_angular_speed = 0.05f;   ///< … and this (rad/s) …
-    float time_to_sleep = 0.5f;          ///< … for so many seconds may sleep, when its whole island may
+    float time_to_sleep = 0.5f;          ///< … for so many seconds, and within linear_slop of one place, may sleep when its whole island may
 
     // Caps: clamped and counted in the report, never exceeded.
     float most_linear_speed = 1000;   ///< m/s

@@ -155,7 +155,7 @@ void describe(A& a, dynamics::BodyTraits& t) {
 }
 template <class A>
 void describe(A& a, dynamics::BodyMotion& m) {
-    all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.island);
+    all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.drift, m.island);
 }
 template <class A>
 void describe(A& a, dynamics::BodyForces& f) {

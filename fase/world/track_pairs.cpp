@@ -150,12 +150,13 @@ void track_pairs(WorldState& state) {
     gather_askers(state);
     if (!state.askers.empty() || edits) {
         find_candidates(state);
-        // A new or moved obstacle wakes what it meets.
+        // A new or moved obstacle wakes what it meets; what was made asleep wakes nobody.
         for (const Pair pair : state.candidates)
-            for (const std::uint32_t collider : {pair.a, pair.b}) {
-                const std::uint32_t other = collider == pair.a ? pair.b : pair.a;
-                if ((state.changes[collider] & edited) && !state.colliders[collider].sensor)
-                    want_awake(state, state.colliders[other].body);
+            for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
+                const bool acts = (state.changes[obstacle] & edited) && !(state.changes[other] & edited) &&
+                                  !state.colliders[obstacle].sensor &&
+                                  state.bodies.traits[state.colliders[obstacle].body].population != Population::Asleep;
+                if (acts) want_awake(state, state.colliders[other].body);
             }
         wake_wanted_islands(state);
         for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes}) boxes->commit();

@@ -256,6 +256,29 @@ TEST_P(EveryStructure, AnswersAskersStoredOrNot) {
     EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(std::span(&stranger, 1), out); }), strange);
 }
 
+TEST_P(EveryStructure, AnswersManyAskersAsItAnswersOneByOne) {
+    Lives life = lives(14);
+    life.insert(700);
+    life.commit();
+    std::vector<Move> askers;
+    life.judge.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
+        if (p % 5 != 0) askers.push_back({p, p % 7 == 0 ? std::get<1>(GetParam()).draw(life.random()) : box});
+        return true;
+    });
+    for (Proxy p = 1000; p < 1100; ++p) askers.push_back({p, std::get<1>(GetParam()).draw(life.random())});
+    std::vector<std::uint8_t> some_marked(900);
+    for (std::uint8_t& mark : some_marked) mark = life.random().below(2) == 0 ? 0 : 4;
+    for (const auto& marks : {std::vector<std::uint8_t>{}, some_marked}) {
+        const auto expected = sorted_pairs([&](auto& out) { life.judge.find_pairs_of(askers, marks, out); });
+        EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, marks, out); }), expected);
+        for (const int threads : {1, 2}) {
+            const auto tasks = make_thread_runner(threads);
+            EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, askers, marks, out); }),
+                      expected);
+        }
+    }
+}
+
 TEST_P(EveryStructure, FindsThePairsBetweenTwo) {
     for (const std::string& other_name : structure_names()) {
         Lives life = lives(12);

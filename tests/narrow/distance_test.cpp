@@ -129,8 +129,7 @@ TEST(Distance, OfSpheresAndCapsulesMatchesTheFormulas) {
         const Cylinder cylinder{random_size(random, 10), random_size(random, 10)};
         const double side = std::sqrt(p.x * p.x + p.z * p.z) - double(cylinder.radius);
         const double cap = std::abs(p.y) - double(cylinder.half_height);
-        const double cylinder_distance =
-            side > 0 && cap > 0 ? std::sqrt(side * side + cap * cap) : std::max(side, cap);
+        const double cylinder_distance = side > 0 && cap > 0 ? std::sqrt(side * side + cap * cap) : std::max(side, cap);
         ASSERT_NEAR(signed_distance(cylinder, a, x).distance, cylinder_distance - double(a.radius), 1e-9) << i;
     }
 }
@@ -148,8 +147,8 @@ TEST(Distance, OfTheSameShapeAsBoxAndAsHullAgrees) {
 
 TEST(Distance, WhereShapesTouchOrCoincideIsFiniteAndProved) {
     Random random(7);
-    const std::vector<Shape> shapes{Sphere{0.5f},        Box{{0.5f, 0.5f, 0.5f}}, Capsule{0.25f, 0.5f},
-                                    Cylinder{0.5f, 0.5f}, box_hull({0.5f, 0.5f, 0.5f})};
+    const std::vector<Shape> shapes{Sphere{0.5f}, Box{{0.5f, 0.5f, 0.5f}}, Capsule{0.25f, 0.5f}, Cylinder{0.5f, 0.5f},
+                                    box_hull({0.5f, 0.5f, 0.5f})};
     for (const Shape& a : shapes) {
         for (const Shape& b : shapes) {
             for (const Vec3d at : {Vec3d{}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, -1}, Vec3d{1, 1, 1},
@@ -168,7 +167,10 @@ TEST(Distance, WhereShapesTouchOrCoincideIsFiniteAndProved) {
                         TransformD y = x;
                         y.position += random_direction(random) * nudge;
                         const Distance e = signed_distance(a, b, y);
-                        EXPECT_EQ(wrong_with(e, a, b, y, tolerance_of(a, b)), "") << name_of(a) << " " << name_of(b) << at.x << at.y << at.z << " turn " << turn << " " << e.distance << " " << nudge << " n " << e.normal.x <<" "<< e.normal.y<<" "<< e.normal.z;
+                        EXPECT_EQ(wrong_with(e, a, b, y, tolerance_of(a, b)), "")
+                            << name_of(a) << " " << name_of(b) << at.x << at.y << at.z << " turn " << turn << " "
+                            << e.distance << " " << nudge << " n " << e.normal.x << " " << e.normal.y << " "
+                            << e.normal.z;
                         EXPECT_NEAR(e.distance, d.distance, nudge + tolerance_of(a, b));
                     }
                 }

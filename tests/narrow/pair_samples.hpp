@@ -1,5 +1,6 @@
 #pragma once
-/// Pairs of random shapes that touch, nearly touch or overlap, from millimetres to kilometres, for the tests of the pairs.
+/// Pairs of random shapes that touch, nearly touch or overlap, from millimetres to kilometres, for the tests of the
+/// pairs.
 #include "fase/narrow/distance.hpp"
 #include "tests/narrow/random_shapes.hpp"
 

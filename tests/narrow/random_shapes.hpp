@@ -42,13 +42,6 @@ inline TransformD random_transform(Random& random, double reach) {
 /// A length between 1 / `ratio` and 1, evenly spread over the orders of magnitude.
 inline float random_size(Random& random, float ratio) { return std::pow(ratio, -random.unit()); }
 
-inline ConvexHull random_hull(Random& random, int count, Vec3 stretch) {
-    std::vector<Vec3> points;
-    for (int i = 0; i < count; ++i) points.push_back(multiply(random_in_cube(random), stretch));
-    auto hull = build_convex_hull(points);
-    return hull ? *hull : random_hull(random, count + 4, stretch);
-}
-
 /// A hull with the corners of a box.
 inline ConvexHull box_hull(Vec3 half) {
     std::vector<Vec3> points;
@@ -58,15 +51,27 @@ inline ConvexHull box_hull(Vec3 half) {
     return *build_convex_hull(points);
 }
 
-/// A shape of kind `kind` (index into AllShapes) with sizes between 1 / `ratio` and 1.
+/// The hull of random points in a box; the box itself when they happen to be flat.
+inline ConvexHull random_hull(Random& random, int count, Vec3 half) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < count; ++i) points.push_back(multiply(random_in_cube(random), half));
+    auto hull = build_convex_hull(points);
+    return hull ? *hull : box_hull(half);
+}
+
+/// A shape of kind `kind` (index into AllShapes) with sizes between 1 / `ratio` and 1; hulls at least 1 / 100, for
+/// thinner ones are refused.
 inline Shape random_shape(Random& random, std::size_t kind, float ratio = 4) {
     const float x = random_size(random, ratio), y = random_size(random, ratio), z = random_size(random, ratio);
+    constexpr float thinnest = 0.01f;
     switch (kind) {
         case 0: return Sphere{x};
         case 1: return Box{{x, y, z}};
         case 2: return Capsule{x, y};
         case 3: return Cylinder{x, y};
-        case 4: return random_hull(random, 6 + static_cast<int>(random.below(20)), {x, y, z});
+        case 4:
+            return random_hull(random, 6 + static_cast<int>(random.below(20)),
+                               max(Vec3{x, y, z}, Vec3{thinnest, thinnest, thinnest}));
         default: return HalfSpace{};
     }
 }

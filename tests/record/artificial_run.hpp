@@ -40,7 +40,9 @@ inline std::string read_file(const std::string& name) {
     std::ifstream in(name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }
+/// A new file of that name: some file systems write an old one that is cut to nothing through to the disk.
 inline void write_file(const std::string& name, const std::string& bytes) {
+    std::filesystem::remove(name);
     std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
@@ -76,6 +78,7 @@ public:
             if (auto row = writer.add(body(i)); !row) return row.error();
             if (auto row = writer.add(collider(i)); !row) return row.error();
         }
+        if (bodies_ == 0) return {};
         if (auto row = writer.add(RecordedVisual{0, 0, {{1, 2, 3}, {}}, {1, 2, 3, 255}}); !row) return row.error();
         return {};
     }

@@ -2,6 +2,7 @@
 import { RecordingError } from "./format/bytes";
 import { embeddedBytes, fetchedBytes, openInSlices } from "./load";
 import { Player } from "./player";
+import { probeDrawing } from "./scene/webgl";
 import { byId } from "./ui/dom";
 
 function showProgress(text: string, share: number | null): void {
@@ -28,14 +29,12 @@ function showNote(text: string): void {
     note.addEventListener("click", () => (note.hidden = true), { once: true });
 }
 
-function hasWebGl(): boolean {
-    return document.createElement("canvas").getContext("webgl2") !== null;
-}
-
 async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
     byId("error").hidden = true;
     document.body.classList.remove("bare");
-    if (!hasWebGl()) {
+    const drawing = probeDrawing();
+    document.documentElement.classList.toggle("plain", drawing === "software");
+    if (drawing === "none") {
         showError(
             "This browser shows no 3D",
             "The viewer needs WebGL 2. Turn on hardware acceleration in the browser's settings, or use a newer browser.",
@@ -47,7 +46,7 @@ async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
         const bytes = await getBytes();
         const recording = await openInSlices(bytes, showProgress);
         byId("loading").hidden = true;
-        const player = new Player(recording, showNote);
+        const player = new Player(recording, drawing === "software", showNote);
         if (recording.lost) {
             const { frameCount, lost } = recording;
             showNote(`The end of this recording is missing (${lost}). Shown is what is whole: ${frameCount} frames.`);

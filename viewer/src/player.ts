@@ -11,10 +11,13 @@ import type { Frame } from "./model";
 import { Playback, speeds } from "./playback";
 import type { Recording } from "./recording";
 import { type Colouring, colourings, legendOf } from "./scene/colours";
+import { Quality } from "./scene/quality";
 import { View } from "./scene/view";
 
 const prepareAhead = 40;
 const hashPauseMs = 400;
+/** windows up to this width begin without charts */
+const narrow = 720;
 
 export class Player {
     readonly playback: Playback;
@@ -23,7 +26,9 @@ export class Player {
     private readonly charts: Charts;
     private readonly panel: BodyPanel;
     private readonly scrub = byId<HTMLInputElement>("scrub");
+    private readonly quality = new Quality();
     private isDirty = true;
+    private wasMoving = false;
     private isFollowing = false;
     private drawn = -1;
     private lastTick = 0;
@@ -32,12 +37,12 @@ export class Player {
     private preparing = -1;
 
     /** `onTrouble` shows a message that does not end the show. */
-    constructor(private readonly recording: Recording, private readonly onTrouble: (text: string) => void) {
+    constructor(private readonly recording: Recording, isSoftware: boolean, private readonly onTrouble: (text: string) => void) {
         const { tables, frameCount } = recording;
         const canvas = byId<HTMLCanvasElement>("scene");
         const dirty = () => this.touch();
         const place = readHash(location.hash);
-        this.view = new View(canvas, tables, recording.frame(0), () => {
+        this.view = new View(canvas, tables, recording.frame(0), isSoftware, () => {
             this.isDirty = true;
             this.saveHash();
         });
@@ -48,11 +53,16 @@ export class Player {
         document.title = `${tables.title || "recording"} – Fase`;
         this.scrub.max = String(frameCount - 1);
         this.connect(canvas);
+        byId("charts").hidden = window.innerWidth <= narrow;
+        byId("chart-toggle").setAttribute("aria-pressed", String(!byId("charts").hidden));
+        this.charts.draw(0);
         this.resize();
-        this.view.reframe(this.shareBelow());
-        this.setColouring(tables.bodies.some(({ colour, visuals }) => colour !== null || visuals.length > 0) ? "material" : "material");
+        new ResizeObserver(() => this.noteDock()).observe(byId("dock"));
+        this.view.reframe();
+        this.setColouring("material");
         if (place.camera) this.view.camera.place = place.camera;
         if (place.frame !== null) this.playback.seek(place.frame);
+        else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
         this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
         this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
         if (!tables.hasContacts) {
@@ -80,7 +90,7 @@ export class Player {
             follow: () => this.follow(!this.isFollowing),
             reframe: () => {
                 this.follow(false);
-                view.reframe(this.shareBelow());
+                view.reframe();
                 this.touch();
             },
             letGo: () => this.select(null),
@@ -123,13 +133,19 @@ export class Player {
 
     private tick(now: number): void {
         requestAnimationFrame((next) => this.tick(next));
-        this.playback.advance((now - this.lastTick) / 1000);
+        const interval = now - this.lastTick;
+        this.playback.advance(interval / 1000);
         this.lastTick = now;
-        if (!this.isDirty) return;
+        const state = document.documentElement.dataset;
+        const isMoving = this.isDirty;
+        state.still = String(!isMoving && !this.view.isCoarse);
+        if (!isMoving && !this.view.isCoarse) return;
         this.isDirty = false;
         if (this.drawn < 0) this.showFrame();
-        if (this.view.draw()) this.isDirty = true;
-        document.documentElement.dataset.frame = String(this.playback.frame);
+        if (isMoving && this.wasMoving) this.quality.note(interval);
+        this.wasMoving = isMoving;
+        if (this.view.draw(isMoving ? this.quality.share : 1)) this.isDirty = true;
+        state.frame = String(this.playback.frame);
     }
 
     private showFrame(): void {
@@ -244,15 +260,16 @@ export class Player {
     }
 
     private resize(): void {
-        this.view.resize(window.innerWidth, window.innerHeight);
-        document.documentElement.style.setProperty("--dock", `${byId("dock").offsetHeight}px`);
+        this.noteDock();
+        this.view.resize(window.innerWidth, window.innerHeight, byId("dock").offsetHeight);
         this.charts.resize();
         this.refreshCharts();
         this.touch();
     }
 
-    private shareBelow(): number {
-        return byId("dock").offsetHeight / window.innerHeight;
+    /** Other panels keep clear of the dock. */
+    private noteDock(): void {
+        document.documentElement.style.setProperty("--dock", `${byId("dock").offsetHeight}px`);
     }
 
     private saveHash(): void {

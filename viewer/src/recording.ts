@@ -10,7 +10,6 @@ import type { Frame, Summary, Tables } from "./model";
 const rawBudget = 96 * 1024 * 1024;
 const frameBudget = 160 * 1024 * 1024;
 const bytesPerBody = 46;
-const mostTableBytes = 64 * 1024 * 1024;
 
 interface Block {
     first: number;
@@ -66,7 +65,7 @@ export class Recording {
         const { chunks, lost } = yield* walkChunks(file);
         if (chunks[0]?.type !== "HEAD") throw new RecordingError(lost || "found no HEAD as first chunk");
         const tables = decodeHead(unpack(chunks[0].body, "HEAD"));
-        const mostBytes = Math.min(mostTableBytes, 8 * 1024 * 1024 + 16 * file.length);
+        const mostBytes = 4 * 1024 * 1024 + 16 * file.length;
         let tableBytes = rawLengthOf(chunks[0]);
         let trouble = lost;
         const blocks: Block[] = [];

@@ -17,11 +17,11 @@ struct Ends {
     float u[4], v[4], w[4];
 };
 
-/// The part of the incident box's face that lies over face (`axis`, `sign`) of the reference box, as candidates of which
-/// u and v run along the two axes after `axis`, w along sign * axis. Only points with w <= margin. The reference face is
-/// taken a thousandth larger than it is: so boxes stacked flush do not change their points with every rounding error.
-/// Features: bits 0–1 say 0 = corner of the incident box, 1 = its edge crosses a side, 2 = corner of the reference box.
-/// Source: Liang, Barsky 1984, A new concept and method for line clipping.
+/// The part of the incident box's face that lies over face (`axis`, `sign`) of the reference box, as candidates of
+/// which u and v run along the two axes after `axis`, w along sign * axis. Only points with w <= margin. The reference
+/// face is taken a thousandth larger than it is: so boxes stacked flush do not change their points with every rounding
+/// error. Features: bits 0–1 say 0 = corner of the incident box, 1 = its edge crosses a side, 2 = corner of the
+/// reference box. Source: Liang, Barsky 1984, A new concept and method for line clipping.
 inline void clip_box_faces(const BoxesFromReference& boxes, int axis, float sign, float margin, PlanarPoints& out) {
     const int iu = axis == 2 ? 0 : axis + 1, iv = iu == 2 ? 0 : iu + 1;
     const float(&turn)[3][3] = boxes.turn;

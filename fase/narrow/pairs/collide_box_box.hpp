@@ -24,6 +24,18 @@ struct Axis {
     int a, b;  ///< axes of the two boxes; -1: none of this box
 };
 
+/// Is the axis of two edges within 10° of the normal of a face? `size`: length of the edges' cross product.
+inline bool nearly_flat(const Turned& turned, const Axis& face, const Axis& edges, float size) {
+    constexpr float cos_10 = 0.985f;
+    const auto& r = turned.r;
+    const int i = edges.a, j = edges.b, i1 = i == 2 ? 0 : i + 1, i2 = i1 == 2 ? 0 : i1 + 1;
+    Vec3 n;
+    n[i1] = -r[i2][j];
+    n[i2] = r[i1][j];
+    const float along = face.a >= 0 ? n[face.a] : n.x * r[0][face.b] + n.y * r[1][face.b] + n.z * r[2][face.b];
+    return std::fabs(along) > cos_10 * size;
+}
+
 /// The contact of edge `axis.a` of a with edge `axis.b` of b. No point: they pass beyond their ends.
 inline Manifold touch_edges(const Box& a, const Box& b, Vec3 t, const Turned& turned, const Axis& axis, float margin) {
     const auto& r = turned.r;
@@ -120,8 +132,10 @@ inline Manifold touch_faces(const Box& a, const Box& b, Vec3 t, const Turned& tu
 
 /// Up to 4 points. Normal: of the 15 axes the one with the largest separation; faces of a win over faces of b, and
 /// both over edges, unless the other is better by 1 % and by 2e-4 of the smallest half size: so the choice does not
-/// flicker at rest. Corner near corner, edge or face beyond its side: the true closest points of the boxes, one point.
-/// Features: see clip_box_faces(); bits 0–1 = 3: two edges. Source: Gottschalk, Lin, Manocha 1996, OBBTree, section 5.
+/// flicker at rest; an edge axis within 10° of the best face's normal gives way to the face when what lies over the
+/// face is as deep to 3 %: four points carry better than one. Corner near corner, edge or face beyond its side: the
+/// true closest points of the boxes, one point. Features: see clip_box_faces(); bits 0–1 = 3: two edges. Source:
+/// Gottschalk, Lin, Manocha 1996, OBBTree, section 5.
 [[nodiscard]] inline Manifold collide(const Box& a, const Box& b, const LocalPose& b_in_a, float margin) {
     const Vec3 t = b_in_a.position;
     const Mat3 turn = to_matrix(b_in_a.rotation);
@@ -170,8 +184,8 @@ inline Manifold touch_faces(const Box& a, const Box& b, Vec3 t, const Turned& tu
     }
     threshold = ahead();
 
-    // Edges: the axis e_i x b_j is not unit, and its length at most 1; so while the boxes overlap, a product that does not
-    // reach the threshold does not reach it after division either. Most pairs need no square root.
+    // Edges: the axis e_i x b_j is not unit, and its length at most 1; so while the boxes overlap, a product that does
+    // not reach the threshold does not reach it after division either. Most pairs need no square root.
     float of_edges[9], squared[9];
     float nearest = -1e30f;
     for (int i = 0; i < 3; ++i) {
@@ -189,29 +203,48 @@ inline Manifold touch_faces(const Box& a, const Box& b, Vec3 t, const Turned& tu
             nearest = product > nearest ? product : nearest;
         }
     }
+    // The best pair of edges that beats `to_beat`; none: a = -1.
     bool apart = false;
-    const auto try_edges = [&](float to_beat, float better_by) {
+    const auto best_edges = [&](float to_beat, float better_by) {
+        box_box::Axis found = {0, -1, -1};
         for (int k = 0; k < 9; ++k) {
             if (of_edges[k] <= (to_beat < 0 ? to_beat : 0.f)) continue;
             const float separation = of_edges[k] / std::sqrt(squared[k]);
             apart = apart || !(separation <= margin);
             if (separation > to_beat) {
-                best = {separation, k / 3, k % 3};
+                found = {separation, k / 3, k % 3};
                 to_beat = separation + better_by;
             }
         }
+        return found;
     };
-    if (nearest > (threshold < 0 ? threshold : 0.f)) try_edges(threshold, clearly);
-    if (apart) return {};
-    const float by_best = best.separation;
-    const bool by_face = best.a < 0 || best.b < 0;
-    const Manifold manifold = by_face ? box_box::touch_faces(a, b, t, turned, best, margin)
-                                      : box_box::touch_edges(a, b, t, turned, best, margin);
-    if (manifold.count > 0) return manifold;
-    // Corner past corner; or a face that won only because faces are preferred, and has nothing over it.
-    if (by_best > 0) return touch_across_gap(a, b, b_in_a, margin, 3u);
-    try_edges(by_best, 0);
-    return best.separation > by_best ? box_box::touch_edges(a, b, t, turned, best, margin) : manifold;
+    box_box::Axis edges = {0, -1, -1};
+    if (nearest > (threshold < 0 ? threshold : 0.f)) {
+        edges = best_edges(threshold, clearly);
+        if (apart) return {};
+        if (edges.a >= 0 && !box_box::nearly_flat(turned, best, edges, std::sqrt(squared[3 * edges.a + edges.b]))) {
+            const Manifold manifold = box_box::touch_edges(a, b, t, turned, edges, margin);
+            return manifold.count > 0 ? manifold : touch_across_gap(a, b, b_in_a, margin, 3u);
+        }
+    }
+    const Manifold over_face = box_box::touch_faces(a, b, t, turned, best, margin);
+    if (edges.a < 0) {
+        if (over_face.count > 0) return over_face;
+        // Corner past corner; or a face that won only because faces are preferred, and has nothing over it.
+        if (best.separation > 0) return touch_across_gap(a, b, b_in_a, margin, 3u);
+        edges = best_edges(best.separation, 0);
+        return edges.a < 0 ? over_face : box_box::touch_edges(a, b, t, turned, edges, margin);
+    }
+    if (over_face.count > 0) {
+        float deepest = over_face.points[0].separation;
+        for (int k = 1; k < over_face.count; ++k) {
+            const float separation = over_face.points[k].separation;
+            deepest = separation < deepest ? separation : deepest;
+        }
+        if (deepest <= edges.separation + clearly + 0.03f * std::fabs(edges.separation)) return over_face;
+    }
+    const Manifold manifold = box_box::touch_edges(a, b, t, turned, edges, margin);
+    return manifold.count > 0 ? manifold : touch_across_gap(a, b, b_in_a, margin, 3u);
 }
 
 }  // namespace fase::narrow

@@ -137,7 +137,8 @@ inline Way way_out(const Vec3& half, const CapsuleSegment& segment) {
     if (size[i] < 0.95f || std::fabs(dot(way.out, segment.axis)) > 0.3f) return manifold;
     // Seen along the normal: which need not be quite the face's.
     const float height = sign * segment.centre[i] - a.half[i], climb = sign * segment.axis[i];
-    const Vec3 middle = segment.centre - way.out * (height / size[i]), along = segment.axis - way.out * (climb / size[i]);
+    const Vec3 middle = segment.centre - way.out * (height / size[i]),
+               along = segment.axis - way.out * (climb / size[i]);
     float lo = -segment.reach, hi = segment.reach;
     for (int k = 0; k < 3; ++k) {
         if (k == i) continue;

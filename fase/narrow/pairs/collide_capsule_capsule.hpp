@@ -47,7 +47,8 @@ namespace fase::narrow {
     };
     const ManifoldPoint lower = over(lo, 1), upper = over(hi, 2);
     const float least = lower.separation < upper.separation ? lower.separation : upper.separation;
-    const bool holds_nearest = least <= manifold.points[0].separation + 1e-3f * (a.radius < b.radius ? a.radius : b.radius);
+    const bool holds_nearest =
+        least <= manifold.points[0].separation + 1e-3f * (a.radius < b.radius ? a.radius : b.radius);
     if (!(holds_nearest && lower.separation <= margin && upper.separation <= margin)) return manifold;
     manifold.count = 2;
     manifold.points[0] = lower;

@@ -17,8 +17,8 @@ namespace fase::narrow {
     Manifold manifold;
     if (!(squared <= reach * reach)) return manifold;
     const auto region = [](float x) { return x > 0 ? 2u : x < 0 ? 1u : 0u; };
-    const float largest = b.half.x > b.half.y ? (b.half.x > b.half.z ? b.half.x : b.half.z)
-                                              : (b.half.y > b.half.z ? b.half.y : b.half.z);
+    const float largest =
+        b.half.x > b.half.y ? (b.half.x > b.half.z ? b.half.x : b.half.z) : (b.half.y > b.half.z ? b.half.y : b.half.z);
     // Nearer to the surface than rounding can tell: the face decides the normal.
     const float noise = 1e-6f * largest;
     Vec3 from_box;

@@ -17,10 +17,8 @@ namespace fase::narrow {
     for (std::uint32_t i = 0; i < hull.face_count; ++i) {
         const float here = signed_distance(hull.faces[i].plane, centre);
         if (!(here <= reach)) return {};
-        if (here > height) {
-            height = here;
-            face = i;
-        }
+        face = here > height ? i : face;
+        height = here > height ? here : height;
     }
     const Vec3 size = abs(centre) + abs(hull.vertices[0]);
     const float noise = 4e-7f * (size.x + size.y + size.z);

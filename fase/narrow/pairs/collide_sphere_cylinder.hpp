@@ -10,7 +10,9 @@ namespace fase::narrow {
 /// The feature names side (0), upper or lower cap (1, 2), upper or lower rim (3, 4).
 [[nodiscard]] inline Manifold collide(const Sphere& a, const Cylinder& b, const LocalPose& b_in_a, float margin) {
     const Vec3 centre = rotate_back(b_in_a.rotation, -b_in_a.position);
-    const float sideways = std::sqrt(centre.x * centre.x + centre.z * centre.z);
+    const float squared_sideways = centre.x * centre.x + centre.z * centre.z;
+    // Below this the square has lost its digits.
+    const float sideways = squared_sideways > 1e-30f ? std::sqrt(squared_sideways) : 0.f;
     const float up = centre.y < 0 ? -1.f : 1.f;
     const float beyond_side = sideways - b.radius, beyond_cap = up * centre.y - b.half_height;
     const float reach = a.radius + margin;

@@ -42,8 +42,12 @@ inline PlanarFrame frame_of(const HullView& hull, std::uint32_t face_index) {
 class FaceClipper {
 public:
     FaceClipper(const FaceOverFace& faces, const PlanarFrame& frame, float margin, PlanarPoints& out)
-        : faces_(faces), frame_(frame), reference_(faces.reference.faces[faces.reference_face]),
-          incident_(faces.incident.faces[faces.incident_face]), margin_(margin), out_(out) {
+        : faces_(faces),
+          frame_(frame),
+          reference_(faces.reference.faces[faces.reference_face]),
+          incident_(faces.incident.faces[faces.incident_face]),
+          margin_(margin),
+          out_(out) {
         float area = 0, round = 0, far = 0;
         At before = reference_corner(0);
         const At first = before;
@@ -160,7 +164,9 @@ private:
         const Vec3 p = point - frame_.origin;
         return {dot(p, frame_.u_axis), dot(p, frame_.v_axis), dot(p, frame_.normal)};
     }
-    [[nodiscard]] std::uint32_t reference_vertex(std::uint32_t k) const { return faces_.reference.corner(reference_, k); }
+    [[nodiscard]] std::uint32_t reference_vertex(std::uint32_t k) const {
+        return faces_.reference.corner(reference_, k);
+    }
     [[nodiscard]] std::uint32_t incident_vertex(std::uint32_t k) const { return faces_.incident.corner(incident_, k); }
     [[nodiscard]] At reference_corner(std::uint32_t k) const {
         return in_frame(faces_.reference.vertices[reference_vertex(k)]);

@@ -11,7 +11,7 @@ namespace fase::narrow {
 /// Two polyhedra, b seen from a.
 struct HullPair {
     HullView a, b;
-    Mat3 turn;  ///< b's directions to a's frame
+    Mat3 turn;   ///< b's directions to a's frame
     Vec3 place;  ///< of b's origin in a's frame
 };
 
@@ -46,74 +46,98 @@ inline BestFace find_best_face(const HullView& hull, const HullView& other, cons
         result.separation = signed_distance(plane, result.witness_at);
         return result;
     };
-    const Vec3 target = place + turn * other.middle();
-    std::uint32_t start = 0;
-    float farthest = signed_distance(hull.faces[0].plane, target);
-    for (std::uint32_t i = 1; i < hull.face_count; ++i) {
-        const float distance = signed_distance(hull.faces[i].plane, target);
-        if (distance > farthest) {
-            farthest = distance;
-            start = i;
-        }
-    }
+    const std::uint32_t start = hull.face_under(place + turn * other.middle());
     BestFace best = deepest(start);
     const float inner = -signed_distance(hull.faces[start].plane, hull.middle());
+    // The vertex found last rules out the neighbours of the face that it was found for.
+    Vec3 last = best.witness_at;
     for (std::uint32_t i = 0; i < hull.face_count && best.separation <= margin; ++i) {
-        if (signed_distance(hull.faces[i].plane, best.witness_at) <= best.separation + clearly) continue;
-        const BestFace other_face = deepest(i);
-        if (other_face.separation > best.separation + clearly) best = other_face;
+        const Plane& plane = hull.faces[i].plane;
+        const float to_beat = best.separation + clearly;
+        if (signed_distance(plane, best.witness_at) <= to_beat || signed_distance(plane, last) <= to_beat) continue;
+        const BestFace here = deepest(i);
+        last = here.witness_at;
+        if (here.separation > to_beat) best = here;
     }
     best.inner = inner > 0 ? inner : 0.f;
     return best;
 }
 
-/// Edges of a hull that may carry an axis better than `threshold`, in another frame.
-struct EdgeBatch {
-    static constexpr int capacity = 48;
-    /// A vector that is not set to 0 first: the batch is large and mostly unused.
-    struct Plain {
-        float x, y, z;
-        Plain() = default;
-        Plain& operator=(Vec3 v) {
-            x = v.x;
-            y = v.y;
-            z = v.z;
-            return *this;
-        }
-        operator Vec3() const { return {x, y, z}; }
-    };
-    struct Entry {
-        Plain from, along;  ///< `along` has the direction of face_b's normal x face_a's
-        Plain normal_a, normal_b;
-        std::uint32_t index;
-    };
-    int count = 0;
-    std::array<Entry, capacity> entries;
+/// Which faces of a hull a point does not rule out: those that it is farther off than `least`.
+class FacesBeyond {
+public:
+    FacesBeyond(const HullView& hull, Vec3 point, float least) : hull_(hull), point_(point), least_(least) {
+        const std::uint32_t count = hull.face_count < capacity ? hull.face_count : capacity;
+        for (std::uint32_t i = 0; i < count; ++i) marks_[i] = test(i);
+    }
+    [[nodiscard]] bool operator()(std::uint32_t face) const { return face < capacity ? marks_[face] : test(face); }
+
+private:
+    static constexpr std::uint32_t capacity = 512;
+    [[nodiscard]] bool test(std::uint32_t face) const {
+        return signed_distance(hull_.faces[face].plane, point_) > least_;
+    }
+    const HullView& hull_;
+    Vec3 point_;
+    float least_;
+    std::array<bool, capacity> marks_;
 };
 
-/// Collects the next edges, from index `next` on, that a point at `witness` (of the other hull, in this hull's frame)
-/// does not rule out: along any axis between the two faces' normals, the point is no farther off than over the farther
-/// of the two faces while that is below 0. Returns where to go on.
-inline std::uint32_t collect_edges(const HullView& hull, std::uint32_t next, Vec3 witness, float threshold,
-                                   const Mat3* turn, Vec3 place, float flip, EdgeBatch& out) {
-    const float least = threshold < 0 ? threshold : 0.f;
+/// Some edges of a hull in a's frame, component by component; only the first `count` entries mean anything.
+struct EdgeBatch {
+    static constexpr int capacity = 48;
+    struct Vectors {
+        std::array<float, capacity> x, y, z;
+        void put(int i, Vec3 v) {
+            x[i] = v.x;
+            y[i] = v.y;
+            z[i] = v.z;
+        }
+        [[nodiscard]] Vec3 operator[](int i) const { return {x[i], y[i], z[i]}; }
+    };
+    int count = 0;
+    Vectors from, along;         ///< `along` has the direction of face_b's normal x face_a's
+    Vectors normal_a, normal_b;  ///< of the faces that meet there
+    std::array<std::uint32_t, capacity> index;
+};
+
+/// Collects the next edges, from index `next` on, that have a face in `beyond`: along any axis between the normals of
+/// its two faces, a point of the other hull is no farther off an edge than off the farther of the two faces, while that
+/// is below 0. `to_a` (null: none) takes directions to a's frame, `place` is the hull's origin there, `flip` turns the
+/// normals. Returns where to go on.
+inline std::uint32_t collect_edges(const HullView& hull, const FacesBeyond& beyond, std::uint32_t next,
+                                   const Mat3* to_a, Vec3 place, float flip, EdgeBatch& out) {
     out.count = 0;
     for (; next < hull.edge_count && out.count < EdgeBatch::capacity; ++next) {
         const ConvexHull::Edge& edge = hull.edges[next];
-        const Plane& a = hull.faces[edge.face_a].plane;
-        const Plane& b = hull.faces[edge.face_b].plane;
-        if (signed_distance(a, witness) <= least && signed_distance(b, witness) <= least) continue;
+        if (!beyond(edge.face_a) && !beyond(edge.face_b)) continue;
+        const Vec3 normal_a = hull.faces[edge.face_a].plane.normal, normal_b = hull.faces[edge.face_b].plane.normal;
         const Vec3 from = hull.vertices[edge.from];
         Vec3 along = hull.vertices[edge.to] - from;
-        if (dot(along, cross(b.normal, a.normal)) < 0) along = -along;
-        EdgeBatch::Entry& entry = out.entries[out.count++];
-        entry.index = next;
-        entry.from = turn ? place + *turn * from : from;
-        entry.along = turn ? *turn * along : along;
-        entry.normal_a = (turn ? *turn * a.normal : a.normal) * flip;
-        entry.normal_b = (turn ? *turn * b.normal : b.normal) * flip;
+        if (dot(along, cross(normal_b, normal_a)) < 0) along = -along;
+        const int i = out.count++;
+        out.index[i] = next;
+        out.from.put(i, to_a ? place + *to_a * from : from);
+        out.along.put(i, to_a ? *to_a * along : along);
+        out.normal_a.put(i, (to_a ? *to_a * normal_a : normal_a) * flip);
+        out.normal_b.put(i, (to_a ? *to_a * normal_b : normal_b) * flip);
     }
     return next;
+}
+
+/// Edge `i` of batch a against all of batch b: `crosses[k]` is not 0 where their arcs on the Gauss map cross, so that
+/// the two edges make a face of the Minkowski difference. b's normals must be turned round. A short loop without
+/// branches, which becomes vector code.
+inline void find_crossings(const EdgeBatch& a, int i, const EdgeBatch& b,
+                           std::array<int, EdgeBatch::capacity>& crosses) {
+    const Vec3 along = a.along[i], n1 = a.normal_a[i], n2 = a.normal_b[i];
+    for (int k = 0; k < b.count; ++k) {
+        const float b1 = b.normal_a.x[k] * along.x + b.normal_a.y[k] * along.y + b.normal_a.z[k] * along.z;
+        const float b2 = b.normal_b.x[k] * along.x + b.normal_b.y[k] * along.y + b.normal_b.z[k] * along.z;
+        const float a1 = n1.x * b.along.x[k] + n1.y * b.along.y[k] + n1.z * b.along.z[k];
+        const float a2 = n2.x * b.along.x[k] + n2.y * b.along.y[k] + n2.z * b.along.z[k];
+        crosses[k] = (b1 * b2 < 0) & (a1 * a2 < 0) & (b1 * a2 > 0);
+    }
 }
 
 /// The best pair of edges whose axis separates by more than `threshold`; a later pair wins only by `clearly`. `noise`:
@@ -123,30 +147,29 @@ inline BestEdges find_best_edges(const HullPair& pair, const BestFace& of_a, con
                                  float clearly, float noise) {
     BestEdges best;
     EdgeBatch batch_a, batch_b;
+    std::array<int, EdgeBatch::capacity> crosses;
+    const float least = threshold < 0 ? threshold : 0.f;
+    const FacesBeyond beyond_a(pair.a, of_a.witness_at, least), beyond_b(pair.b, of_b.witness_at, least);
     for (std::uint32_t next_a = 0; next_a < pair.a.edge_count;) {
-        next_a = collect_edges(pair.a, next_a, of_a.witness_at, threshold, nullptr, {}, 1, batch_a);
+        next_a = collect_edges(pair.a, beyond_a, next_a, nullptr, {}, 1, batch_a);
         if (batch_a.count == 0) continue;
         for (std::uint32_t next_b = 0; next_b < pair.b.edge_count;) {
-            next_b = collect_edges(pair.b, next_b, of_b.witness_at, threshold, &pair.turn, pair.place, -1, batch_b);
+            next_b = collect_edges(pair.b, beyond_b, next_b, &pair.turn, pair.place, -1, batch_b);
             for (int i = 0; i < batch_a.count; ++i) {
-                const Vec3 from_a = batch_a.entries[i].from, along_a = batch_a.entries[i].along;
-                const Vec3 normal_a1 = batch_a.entries[i].normal_a, normal_a2 = batch_a.entries[i].normal_b;
-                const float length_a = length_squared(along_a);
+                find_crossings(batch_a, i, batch_b, crosses);
+                const Vec3 from_a = batch_a.from[i], along_a = batch_a.along[i];
                 for (int k = 0; k < batch_b.count; ++k) {
-                    const EdgeBatch::Entry& b = batch_b.entries[k];
-                    // b's normals are turned round (flip): so their arc turns the same way about b.along.
-                    const Vec3 along_b = b.along, normal_b1 = b.normal_a, normal_b2 = b.normal_b;
-                    const float b1 = dot(normal_b1, along_a), b2 = dot(normal_b2, along_a);
-                    const float a1 = dot(normal_a1, along_b), a2 = dot(normal_a2, along_b);
-                    if (!((b1 * b2 < 0) & (a1 * a2 < 0) & (b1 * a2 > 0))) continue;
+                    if (crosses[k] == 0) continue;
+                    const Vec3 along_b = batch_b.along[k];
                     Vec3 normal = cross(along_a, along_b);
-                    const float squared = length_squared(normal), scale = length_a * length_squared(along_b);
+                    const float squared = length_squared(normal);
+                    const float scale = length_squared(along_a) * length_squared(along_b);
                     if (!(squared > 1e-6f * scale)) continue;
-                    if (dot(normal, normal_a1 + normal_a2) < 0) normal = -normal;
+                    if (dot(normal, batch_a.normal_a[i] + batch_a.normal_b[i]) < 0) normal = -normal;
                     const float size = std::sqrt(squared);
-                    const float separation = (dot(normal, Vec3(b.from) - from_a) - noise * std::sqrt(scale)) / size;
+                    const float separation = (dot(normal, batch_b.from[k] - from_a) - noise * std::sqrt(scale)) / size;
                     if (separation > threshold) {
-                        best = {true, separation, batch_a.entries[i].index, b.index, normal * (1 / size)};
+                        best = {true, separation, batch_a.index[i], batch_b.index[k], normal * (1 / size)};
                         threshold = separation + clearly;
                     }
                 }

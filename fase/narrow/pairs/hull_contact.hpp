@@ -10,6 +10,7 @@ namespace fase::narrow {
 struct HullContact {
     Manifold manifold;
     bool whole = true;
+    float deepest = 1e30f;  ///< least separation of its points
 };
 
 /// The contact over the best face of a (`from_a`) or of b.
@@ -34,7 +35,7 @@ inline HullContact touch_hull_faces(const HullPair& pair, const BestFace& best, 
     if (!whole) whole = clipper.put_vertex(best.witness);
     reduce_to_four(points, tolerance);
 
-    HullContact contact = {{}, whole};
+    HullContact contact = {{}, whole, whole && best.separation < deepest ? best.separation : deepest};
     Manifold& manifold = contact.manifold;
     manifold.count = points.count;
     manifold.normal = from_a ? frame.normal : pair.turn * -frame.normal;
@@ -68,20 +69,24 @@ inline HullContact touch_hull_edges(const HullPair& pair, const BestEdges& best,
     const float separation = dot(best.normal, on_b - on_a);
     if (!(separation <= margin)) return contact;
     contact.manifold.count = 1;
-    contact.manifold.points[0] = {(on_a + on_b) * 0.5f, separation, 3u | (best.edge_a & 0x7fffu) << 2 | best.edge_b << 17};
+    contact.manifold.points[0] = {(on_a + on_b) * 0.5f, separation,
+                                  3u | (best.edge_a & 0x7fffu) << 2 | best.edge_b << 17};
     return contact;
 }
 
 /// Normal: of all face normals and edge pairs the axis with the largest separation; faces of a win over faces of b, and
 /// both over edges, unless the other is better by 1 % and by 2e-4 of the hulls' thickness. Features: see FaceClipper;
-/// bits 0–1 = 3: two edges. Not whole: the hulls pass corner to corner or corner to edge, the margin between them.
+/// bits 0–1 = 3: two edges. An edge axis within 10° of the best face's normal gives way to the face when what lies over
+/// the face is as deep to 3 %: four points carry better than one. Not whole: the hulls pass corner to corner or corner
+/// to edge, the margin between them.
 inline HullContact touch_hulls(const HullView& a, const HullView& b, const LocalPose& b_in_a, float margin) {
     const HullPair pair = {a, b, to_matrix(b_in_a.rotation), b_in_a.position};
     const Vec3 reach = abs(b_in_a.position) + abs(a.vertices[0]) + abs(b.vertices[0]);
     const float noise = 4e-7f * (reach.x + reach.y + reach.z);
     const BestFace of_a = find_best_face(a, b, pair.turn, pair.place, margin, noise);
     if (!(of_a.separation <= margin)) return {};
-    const BestFace of_b = find_best_face(b, a, transpose(pair.turn), -transpose_times(pair.turn, pair.place), margin, noise);
+    const BestFace of_b =
+        find_best_face(b, a, transpose(pair.turn), -transpose_times(pair.turn, pair.place), margin, noise);
     if (!(of_b.separation <= margin)) return {};
     const float clearly = noise + 2e-4f * (of_a.inner < of_b.inner ? of_a.inner : of_b.inner);
     const auto ahead = [&](float separation) { return separation + clearly + 0.01f * std::fabs(separation); };
@@ -89,17 +94,25 @@ inline HullContact touch_hulls(const HullView& a, const HullView& b, const Local
     const BestFace& best = from_a ? of_a : of_b;
     const float by_face = best.separation;
     BestEdges edges = find_best_edges(pair, of_a, of_b, ahead(by_face), clearly, noise);
-    if (!edges.found) {
-        const HullContact contact = touch_hull_faces(pair, best, from_a, margin);
-        if (contact.whole) return contact;
-        // The face won only because faces are preferred, but its contact is not there.
-        if (by_face < 0) edges = find_best_edges(pair, of_a, of_b, by_face, 0, noise);
-        if (!edges.found) return {contact.manifold, by_face < 0 || contact.manifold.count > 0};
+    if (edges.found && !(edges.separation <= margin)) return {};
+    const auto over_edges = [&] {
+        HullContact contact = touch_hull_edges(pair, edges, margin);
+        contact.whole = contact.whole || edges.separation <= 0;
+        return contact;
+    };
+    constexpr float cos_10 = 0.985f;
+    const Vec3 face_normal = from_a ? a.faces[best.face].plane.normal : pair.turn * -b.faces[best.face].plane.normal;
+    if (edges.found && dot(edges.normal, face_normal) < cos_10) return over_edges();
+    const HullContact contact = touch_hull_faces(pair, best, from_a, margin);
+    if (edges.found) {
+        const float as_deep = edges.separation + clearly + 0.03f * std::fabs(edges.separation);
+        return contact.deepest <= as_deep ? HullContact{contact.manifold} : over_edges();
     }
-    if (!(edges.separation <= margin)) return {};
-    HullContact contact = touch_hull_edges(pair, edges, margin);
-    contact.whole = contact.whole || edges.separation <= 0;
-    return contact;
+    if (contact.whole) return contact;
+    // The face won only because faces are preferred, but its contact is not there.
+    if (by_face < 0) edges = find_best_edges(pair, of_a, of_b, by_face, 0, noise);
+    if (edges.found) return over_edges();
+    return {contact.manifold, by_face < 0 || contact.manifold.count > 0};
 }
 
 }  // namespace fase::narrow

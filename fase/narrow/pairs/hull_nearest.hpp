@@ -16,7 +16,8 @@ struct NearestOnHull {
 
 /// The point of a face nearest to `point`, which is `height` above its plane; `noise`: distances below it are no
 /// direction.
-inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_index, Vec3 point, float height, float noise) {
+inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_index, Vec3 point, float height,
+                                     float noise) {
     const ConvexHull::Face& face = hull.faces[face_index];
     const Vec3 normal = face.plane.normal;
     NearestOnHull best;
@@ -46,8 +47,8 @@ inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_in
     return best;
 }
 
-/// The point of the hull nearest to `point`, which is outside; `face` keeps it farthest away, by `height`. Cost: one face,
-/// then a look at all vertices, which nearly always shows that nothing is nearer.
+/// The point of the hull nearest to `point`, which is outside; `face` keeps it farthest away, by `height`. Cost: one
+/// face, then a look at all vertices, which nearly always shows that nothing is nearer.
 inline NearestOnHull nearest_on_hull(const HullView& hull, Vec3 point, std::uint32_t face, float height, float noise) {
     NearestOnHull best = nearest_on_face(hull, face, point, height, noise);
     if ((best.feature & 3u) == 0) return best;

@@ -18,8 +18,11 @@ struct HullView {
     std::uint32_t vertex_count, face_count, edge_count;
 
     explicit HullView(const ConvexHull& hull)
-        : vertices(hull.vertices.data()), faces(hull.faces.data()), face_vertices(hull.face_vertices.data()),
-          edges(hull.edges.data()), vertex_count(static_cast<std::uint32_t>(hull.vertices.size())),
+        : vertices(hull.vertices.data()),
+          faces(hull.faces.data()),
+          face_vertices(hull.face_vertices.data()),
+          edges(hull.edges.data()),
+          vertex_count(static_cast<std::uint32_t>(hull.vertices.size())),
           face_count(static_cast<std::uint32_t>(hull.faces.size())),
           edge_count(static_cast<std::uint32_t>(hull.edges.size())) {}
     HullView() = default;
@@ -29,11 +32,10 @@ struct HullView {
         std::uint32_t best = 0;
         float farthest = dot(direction, vertices[0]);
         for (std::uint32_t i = 1; i < vertex_count; ++i) {
+            // Selections: a branch a vertex would be mispredicted too often.
             const float along = dot(direction, vertices[i]);
-            if (along > farthest) {
-                farthest = along;
-                best = i;
-            }
+            best = along > farthest ? i : best;
+            farthest = along > farthest ? along : farthest;
         }
         return best;
     }
@@ -51,13 +53,23 @@ struct HullView {
         float most = dot(direction, faces[0].plane.normal);
         for (std::uint32_t i = 1; i < face_count; ++i) {
             const float along = dot(direction, faces[i].plane.normal);
-            if (along > most) {
-                most = along;
-                best = i;
-            }
+            best = along > most ? i : best;
+            most = along > most ? along : most;
         }
         return best;
     }
+    /// The face whose plane lies farthest below `point`, the first of equals.
+    [[nodiscard]] std::uint32_t face_under(Vec3 point) const {
+        std::uint32_t best = 0;
+        float most = signed_distance(faces[0].plane, point);
+        for (std::uint32_t i = 1; i < face_count; ++i) {
+            const float height = signed_distance(faces[i].plane, point);
+            best = height > most ? i : best;
+            most = height > most ? height : most;
+        }
+        return best;
+    }
+    /// Vertex index of the face's corner k; k == count is the first again.
     [[nodiscard]] std::uint32_t corner(const ConvexHull::Face& face, std::uint32_t k) const {
         return face_vertices[face.first + (k < face.count ? k : k - face.count)];
     }

@@ -11,7 +11,7 @@ struct SinCos {
     double sin = 0, cos = 1;
 };
 
-/// Of an angle in radians, right to 1e-15 for |angle| up to 100. Taylor's series after the angle is brought to within
+/// Of an angle in radians, right to 1e-13 for |angle| up to 100. Taylor's series after the angle is brought to within
 /// ±pi/4; only additions and multiplications, so no library's rounding shows.
 [[nodiscard]] constexpr SinCos sin_cos(double angle) {
     const double quarters = angle * (2 / pi);

@@ -104,7 +104,9 @@ void fill_yard(Masonry& masonry, Vec3d centre) {
             }
         }
     }
-    const double pitch = 2 * double(log_radius) + 0.001, rise = std::sqrt(0.75) * pitch + 0.0001;
+    const double pitch = 2 * double(log_radius) + 0.001,
+                 rise = std::sqrt((2 * double(log_radius) + 0.0002) * (2 * double(log_radius) + 0.0002) -
+                                  pitch * pitch / 4);
     const Quat lying{0.70710678f, 0, 0, 0.70710678f};
     for (const double x : {-6.5, 6.5}) {
         const Vec3d foot = centre + Vec3d{x, 0, -6};

@@ -1,4 +1,5 @@
-/// Buffers, views, accessors and meshes of a glTF document: every offset is checked in 64 bits before anything is allocated or read.
+/// Buffers, views, accessors and meshes of a glTF document: every offset is checked in 64 bits before anything is
+/// allocated or read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +16,12 @@ constexpr std::size_t most_buffer_bytes = std::size_t{1} << 32;
 
 std::uint64_t component_bytes(JsonValue at, std::uint64_t type) {
     switch (type) {
-        case 5120: case 5121: return 1;
-        case 5122: case 5123: return 2;
-        case 5125: case 5126: return 4;
+        case 5120:
+        case 5121: return 1;
+        case 5122:
+        case 5123: return 2;
+        case 5125:
+        case 5126: return 4;
         default: refuse(at, fmt::format("found component type {}, need 5120-5123, 5125 or 5126", type));
     }
 }
@@ -26,7 +30,8 @@ struct ElementType {
     std::string_view name;
     std::uint64_t rows, columns;
 };
-constexpr ElementType element_types[]{{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2}, {"MAT3", 3, 3}, {"MAT4", 4, 4}};
+constexpr ElementType element_types[]{{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1},
+                                      {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
 
 /// Bytes of one element; columns of matrices begin at multiples of 4 bytes.
 std::uint64_t element_bytes(const ElementType& type, std::uint64_t component) {
@@ -39,7 +44,9 @@ double decoded(const std::byte* at, std::uint64_t type, bool normalized) {
         std::memcpy(&value, at, sizeof value);
         return value;
     };
-    const auto scaled = [normalized](double value, double most) { return normalized ? std::max(value / most, -1.0) : value; };
+    const auto scaled = [normalized](double value, double most) {
+        return normalized ? std::max(value / most, -1.0) : value;
+    };
     switch (type) {
         case 5120: return scaled(load(std::int8_t{}), 127);
         case 5121: return scaled(load(std::uint8_t{}), 255);
@@ -73,7 +80,8 @@ void Document::load_buffers() {
         std::shared_ptr<const std::vector<std::byte>> bytes;
         std::uint64_t size = 0;
         if (!uri) {
-            if (i == 0 && has_glb_buffer_) size = glb_buffer_.size();
+            if (i == 0 && has_glb_buffer_)
+                size = glb_buffer_.size();
             else {
                 buffer_bytes_.push_back(nullptr);  // a placeholder: whoever reads it is refused
                 continue;
@@ -85,19 +93,25 @@ void Document::load_buffers() {
             size = bytes->size();
         } else {
             const Result<std::string> path = resolve_uri(folder_, *uri);
-            if (!path) refuse(*buffer.find("uri"), path.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
+            if (!path)
+                refuse(*buffer.find("uri"), path.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
             auto& file = files[*path];
             if (!file) {
                 Result<std::vector<std::byte>> read = read_file(*path, most_buffer_bytes);
-                if (!read) refuse(*buffer.find("uri"), read.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
+                if (!read)
+                    refuse(*buffer.find("uri"), read.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
                 file = std::make_shared<const std::vector<std::byte>>(*std::move(read));
                 budget_ += 8 * file->size();
             }
             bytes = file;
             size = file->size();
         }
-        if (length > size) refuse(length_json, fmt::format("found a buffer of {} bytes, need at most {}, what its data holds", length, size));
-        if (!uri && size - length > 3) refuse(length_json, fmt::format("found a buffer of {} bytes for a chunk of {}, need at most 3 less", length, size));
+        if (length > size)
+            refuse(length_json,
+                   fmt::format("found a buffer of {} bytes, need at most {}, what its data holds", length, size));
+        if (!uri && size - length > 3)
+            refuse(length_json,
+                   fmt::format("found a buffer of {} bytes for a chunk of {}, need at most 3 less", length, size));
         if (!bytes) bytes = std::make_shared<const std::vector<std::byte>>(glb_buffer_.begin(), glb_buffer_.end());
         buffer_bytes_.push_back(std::move(bytes));
     }
@@ -106,17 +120,23 @@ void Document::load_buffers() {
 void Document::check_views() const {
     for (const JsonValue view : views_) {
         static_cast<void>(needed(view, "buffer", JsonKind::Number));
-        const JsonValue buffer = buffers_.empty() ? (refuse(view, "found a view of a buffer, need buffers in the file"), view)
-                                                  : buffers_[index_of(*view.find("buffer"), buffers_.size(), "buffers")];
+        const JsonValue buffer = buffers_.empty()
+                                     ? (refuse(view, "found a view of a buffer, need buffers in the file"), view)
+                                     : buffers_[index_of(*view.find("buffer"), buffers_.size(), "buffers")];
         const std::uint64_t size = *whole_in(buffer, "byteLength"), offset = whole_in(view, "byteOffset").value_or(0);
         const JsonValue length_json = needed(view, "byteLength", JsonKind::Number);
         const std::uint64_t length = *whole_in(view, "byteLength");
         if (length == 0) refuse(length_json, "found a view of 0 bytes, need at least 1");
         if (offset > size || length > size - offset) {
-            refuse(view, fmt::format("found bytes {} to {}, need them within the buffer's {}", offset, offset + length, size));
+            refuse(view, fmt::format("found bytes {} to {}, need them within the buffer's {}", offset, offset + length,
+                                     size));
         }
-        if (const std::optional<std::uint64_t> stride = whole_in(view, "byteStride"); stride && (*stride < 4 || *stride > 252 || *stride % 4 != 0)) {
-            refuse(*view.find("byteStride"), fmt::format("found a stride of {}, need a multiple of 4 from 4 to 252", *stride));
+        const std::optional<std::uint64_t> stride = whole_in(view, "byteStride");
+        if (!stride) continue;
+        if (*stride < 4 || *stride > 252 || *stride % 4 != 0 || *stride > length) {
+            refuse(*view.find("byteStride"),
+                   fmt::format("found a stride of {}, need a multiple of 4 from 4 to 252, at most the view's {}",
+                               *stride, length));
         }
     }
 }
@@ -139,8 +159,11 @@ Document::Accessor Document::accessor(std::uint32_t index) const {
     a.component_type = *whole_in(a.json, "componentType");
     a.component = component_bytes(component_json, a.component_type);
     const JsonValue type_json = needed(a.json, "type", JsonKind::String);
-    const auto* type = std::find_if(std::begin(element_types), std::end(element_types), [&](const ElementType& t) { return t.name == type_json.string(); });
-    if (type == std::end(element_types)) refuse(type_json, fmt::format("found type {}, need SCALAR, VEC2-4 or MAT2-4", quoted_short(type_json.string())));
+    const auto* type = std::find_if(std::begin(element_types), std::end(element_types),
+                                    [&](const ElementType& t) { return t.name == type_json.string(); });
+    if (type == std::end(element_types))
+        refuse(type_json,
+               fmt::format("found type {}, need SCALAR, VEC2-4 or MAT2-4", quoted_short(type_json.string())));
     a.type = *type;
     a.normalized = flag_in(a.json, "normalized", false);
     a.sparse = member(a.json, "sparse", JsonKind::Object);
@@ -152,14 +175,20 @@ Document::Accessor Document::accessor(std::uint32_t index) const {
     const JsonValue view_json = views_[*view_index];
     const std::uint64_t length = *whole_in(view_json, "byteLength");
     a.stride = whole_in(view_json, "byteStride").value_or(element);
-    if (a.stride < element) refuse(a.json, fmt::format("found elements of {} bytes {} apart, need no overlap", element, a.stride));
-    if (offset % a.component != 0 || a.stride % a.component != 0 || (whole_in(view_json, "byteOffset").value_or(0) + offset) % a.component != 0) {
-        refuse(a.json, fmt::format("found components of {} bytes at offset {}, need offsets and strides that are multiples of it", a.component, offset));
+    if (a.stride < element)
+        refuse(a.json, fmt::format("found elements of {} bytes {} apart, need no overlap", element, a.stride));
+    if (offset % a.component != 0 || a.stride % a.component != 0 ||
+        (whole_in(view_json, "byteOffset").value_or(0) + offset) % a.component != 0) {
+        refuse(
+            a.json,
+            fmt::format("found components of {} bytes at offset {}, need offsets and strides that are multiples of it",
+                        a.component, offset));
     }
     // count < 2^32 and stride <= 252: no overflow.
     const std::uint64_t need = a.stride * (a.count - 1) + element;
     if (offset > length || need > length - offset) {
-        refuse(a.json, fmt::format("found {} elements that reach to byte {}, need them within the view's {}", a.count, offset + need, length));
+        refuse(a.json, fmt::format("found {} elements that reach to byte {}, need them within the view's {}", a.count,
+                                   offset + need, length));
     }
     if (buffer_bytes_[index_of(*view_json.find("buffer"), buffers_.size(), "buffers")]) {
         a.bytes = view(*view_index).subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(need));
@@ -171,21 +200,26 @@ void Document::check_accessors() const {
     for (std::uint32_t i = 0; i < accessors_.size(); ++i) {
         const Accessor a = accessor(i);
         if (!a.sparse) continue;
-        const JsonValue indices = needed(*a.sparse, "indices", JsonKind::Object), values = needed(*a.sparse, "values", JsonKind::Object);
+        const JsonValue indices = needed(*a.sparse, "indices", JsonKind::Object),
+                        values = needed(*a.sparse, "values", JsonKind::Object);
         const JsonValue count_json = needed(*a.sparse, "count", JsonKind::Number);
         const std::uint64_t count = *whole_in(*a.sparse, "count", 0xffffffff);
-        if (count == 0 || count > a.count) refuse(count_json, fmt::format("found {} replaced elements, need 1 to {}", count, a.count));
+        if (count == 0 || count > a.count)
+            refuse(count_json, fmt::format("found {} replaced elements, need 1 to {}", count, a.count));
         const JsonValue type_json = needed(indices, "componentType", JsonKind::Number);
         const std::uint64_t type = *whole_in(indices, "componentType");
-        if (type != 5121 && type != 5123 && type != 5125) refuse(type_json, fmt::format("found component type {}, need 5121, 5123 or 5125", type));
+        if (type != 5121 && type != 5123 && type != 5125)
+            refuse(type_json, fmt::format("found component type {}, need 5121, 5123 or 5125", type));
         const std::uint64_t sizes[]{component_bytes(type_json, type), element_bytes(a.type, a.component)};
         const JsonValue parts[]{indices, values};
         for (int k = 0; k < 2; ++k) {
             static_cast<void>(needed(parts[k], "bufferView", JsonKind::Number));
             const std::uint32_t view_index = index_of(*parts[k].find("bufferView"), views_.size(), "bufferViews");
-            const std::uint64_t length = *whole_in(views_[view_index], "byteLength"), offset = whole_in(parts[k], "byteOffset").value_or(0);
+            const std::uint64_t length = *whole_in(views_[view_index], "byteLength"),
+                                offset = whole_in(parts[k], "byteOffset").value_or(0);
             if (offset > length || count * sizes[k] > length - offset) {
-                refuse(parts[k], fmt::format("found {} elements of {} bytes from {}, need them within the view's {}", count, sizes[k], offset, length));
+                refuse(parts[k], fmt::format("found {} elements of {} bytes from {}, need them within the view's {}",
+                                             count, sizes[k], offset, length));
             }
         }
     }
@@ -206,15 +240,21 @@ std::vector<Primitive> Document::primitives(std::uint32_t mesh) const {
         primitive.number = static_cast<std::uint32_t>(all.size());
         const JsonValue attributes = needed(json, "attributes", JsonKind::Object);
         primitive.mode = whole_in(json, "mode", 6).value_or(4);
-        attributes.for_each_member([&](std::string_view, JsonValue value) { static_cast<void>(index_of(value, accessors_.size(), "accessors")); });
+        attributes.for_each_member([&](std::string_view, JsonValue value) {
+            static_cast<void>(index_of(value, accessors_.size(), "accessors"));
+        });
         const std::optional<JsonValue> positions = attributes.find("POSITION");
         primitive.positions = positions ? index_of(*positions, accessors_.size(), "accessors") : 0;
-        if (!positions) primitive.mode = 0;
-        else if (accessor(primitive.positions).type.name != "VEC3") refuse(*positions, "found positions that are no VEC3, need VEC3");
+        if (!positions)
+            primitive.mode = 0;
+        else if (accessor(primitive.positions).type.name != "VEC3")
+            refuse(*positions, "found positions that are no VEC3, need VEC3");
         primitive.indices = index_in(json, "indices", accessors_.size(), "accessors");
         if (primitive.indices) {
             const Accessor indices = accessor(*primitive.indices);
-            const bool right = indices.type.name == "SCALAR" && (indices.component_type == 5121 || indices.component_type == 5123 || indices.component_type == 5125);
+            const bool right =
+                indices.type.name == "SCALAR" &&
+                (indices.component_type == 5121 || indices.component_type == 5123 || indices.component_type == 5125);
             if (!right) refuse(*json.find("indices"), "found indices of another type, need unsigned SCALAR");
         }
         primitive.material = index_in(json, "material", materials_.size(), "materials");
@@ -226,10 +266,12 @@ std::vector<Primitive> Document::primitives(std::uint32_t mesh) const {
 Colour Document::colour(std::optional<std::uint32_t> material) const {
     double c[4] = {1, 1, 1, 1};
     if (material) {
-        const std::optional<JsonValue> surface = member(materials_[*material], "pbrMetallicRoughness", JsonKind::Object);
+        const std::optional<JsonValue> surface =
+            member(materials_[*material], "pbrMetallicRoughness", JsonKind::Object);
         if (surface && numbers_in(*surface, "baseColorFactor", c)) {
             for (const double part : c) {
-                if (!(part >= 0 && part <= 1)) refuse(*surface->find("baseColorFactor"), fmt::format("found {}, need 0 to 1", part));
+                if (!(part >= 0 && part <= 1))
+                    refuse(*surface->find("baseColorFactor"), fmt::format("found {}, need 0 to 1", part));
             }
         }
     }
@@ -237,19 +279,24 @@ Colour Document::colour(std::optional<std::uint32_t> material) const {
 }
 
 void Document::spend(JsonValue at, std::uint64_t bytes) {
-    if (bytes > budget_) refuse(at, fmt::format("found data that grows to {} bytes and more, need a file that grows less when read", bytes));
+    if (bytes > budget_)
+        refuse(at,
+               fmt::format("found data that grows to {} bytes and more, need a file that grows less when read", bytes));
     budget_ -= bytes;
 }
 
 std::vector<double> Document::elements(std::uint32_t index, int components) {
     const Accessor a = accessor(index);
     const auto width = static_cast<std::uint64_t>(components);
-    if (a.type.rows * a.type.columns != width) refuse(a.json, fmt::format("found {} numbers an element, need {}", a.type.rows * a.type.columns, width));
+    if (a.type.rows * a.type.columns != width)
+        refuse(a.json, fmt::format("found {} numbers an element, need {}", a.type.rows * a.type.columns, width));
     spend(a.json, a.count * width * sizeof(double));
-    if (a.json.find("bufferView") && a.bytes.empty()) refuse(a.json, "found a buffer without data, need a uri or a GLB's binary chunk");
+    if (a.json.find("bufferView") && a.bytes.empty())
+        refuse(a.json, "found a buffer without data, need a uri or a GLB's binary chunk");
     std::vector<double> out(static_cast<std::size_t>(a.count * width), 0);
     const auto put = [&](std::size_t element, const std::byte* from) {
-        for (std::size_t k = 0; k < width; ++k) out[element * width + k] = decoded(from + k * a.component, a.component_type, a.normalized);
+        for (std::size_t k = 0; k < width; ++k)
+            out[element * width + k] = decoded(from + k * a.component, a.component_type, a.normalized);
     };
     if (!a.bytes.empty()) {
         for (std::size_t i = 0; i < a.count; ++i) put(i, a.bytes.data() + i * a.stride);
@@ -258,11 +305,13 @@ std::vector<double> Document::elements(std::uint32_t index, int components) {
         const JsonValue indices = *a.sparse->find("indices"), values = *a.sparse->find("values");
         const std::uint64_t count = *whole_in(*a.sparse, "count"), type = *whole_in(indices, "componentType");
         const auto start = [&](JsonValue part) {
-            return view(index_of(*part.find("bufferView"), views_.size(), "bufferViews")).subspan(static_cast<std::size_t>(whole_in(part, "byteOffset").value_or(0)));
+            return view(index_of(*part.find("bufferView"), views_.size(), "bufferViews"))
+                .subspan(static_cast<std::size_t>(whole_in(part, "byteOffset").value_or(0)));
         };
         const std::span<const std::byte> index_bytes = start(indices), value_bytes = start(values);
         for (std::size_t i = 0; i < count; ++i) {
-            const auto element = static_cast<std::uint64_t>(decoded(index_bytes.data() + i * component_bytes(indices, type), type, false));
+            const auto element = static_cast<std::uint64_t>(
+                decoded(index_bytes.data() + i * component_bytes(indices, type), type, false));
             if (element >= a.count) refuse(indices, fmt::format("found index {}, need one below {}", element, a.count));
             put(static_cast<std::size_t>(element), value_bytes.data() + i * element_bytes(a.type, a.component));
         }
@@ -276,7 +325,8 @@ std::vector<Vec3> Document::positions(const Primitive& primitive) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3d p{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
         if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 1e30) {
-            refuse(accessors_[primitive.positions], fmt::format("found ({}, {}, {}) as point {}, need finite numbers", p.x, p.y, p.z, i));
+            refuse(accessors_[primitive.positions],
+                   fmt::format("found ({}, {}, {}) as point {}, need finite numbers", p.x, p.y, p.z, i));
         }
         points[i] = to_float(p);
     }
@@ -289,7 +339,9 @@ std::vector<std::uint32_t> Document::triangles(const Primitive& primitive, std::
     if (primitive.indices) {
         const std::vector<double> numbers = elements(*primitive.indices, 1);
         for (const double number : numbers) {
-            if (number >= static_cast<double>(points)) refuse(accessors_[*primitive.indices], fmt::format("found index {}, need one below {}, the number of points", number, points));
+            if (number >= static_cast<double>(points))
+                refuse(accessors_[*primitive.indices],
+                       fmt::format("found index {}, need one below {}, the number of points", number, points));
             corners.push_back(static_cast<std::uint32_t>(number));
         }
     } else {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -21,13 +21,17 @@ std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t offset) {
 
 std::string byte(std::size_t offset) { return "byte " + std::to_string(offset); }
 
-std::string_view text_of(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
-
-bool is_finite(const Placement& p) {
-    return fase::is_finite(p.linear.x) && fase::is_finite(p.linear.y) && fase::is_finite(p.linear.z) && fase::is_finite(p.position);
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The rotation in a matrix with scale, shear or mirroring: its axes made orthonormal one after the other (Gram, Schmidt).
+bool is_finite(const Placement& p) {
+    return fase::is_finite(p.linear.x) && fase::is_finite(p.linear.y) && fase::is_finite(p.linear.z) &&
+           fase::is_finite(p.position);
+}
+
+/// The rotation in a matrix with scale, shear or mirroring: its axes made orthonormal one after the other (Gram,
+/// Schmidt).
 Quatd rotation_in_matrix(const Mat3d& m) {
     Mat3d r = m;
     if (determinant(r) < 0) r.x = -r.x;
@@ -41,10 +45,12 @@ Quatd rotation_in_matrix(const Mat3d& m) {
 }  // namespace
 
 Placement operator*(const Placement& parent, const Placement& local) {
-    return {parent.linear * local.linear, parent.linear * local.position + parent.position, normalized(parent.rotation * local.rotation), false};
+    return {parent.linear * local.linear, parent.linear * local.position + parent.position,
+            normalized(parent.rotation * local.rotation), false};
 }
 
-Document::Document(const std::vector<std::byte>& bytes, std::string folder) : folder_(std::move(folder)), budget_(8ull * bytes.size() + (32ull << 20)) {
+Document::Document(const std::vector<std::byte>& bytes, std::string folder)
+    : folder_(std::move(folder)), budget_(8ull * bytes.size() + (32ull << 20)) {
     read_container(bytes);
     if (!root().is(JsonKind::Object)) refuse(root(), fmt::format("found {}, need an object", name_of(root().kind())));
     check_asset();
@@ -66,21 +72,32 @@ void Document::read_container(const std::vector<std::byte>& bytes) {
     std::string_view text = text_of(bytes);
     std::size_t text_begin = 0;
     if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
-        if (bytes.size() < 20) refuse_file(byte(bytes.size()), fmt::format("found the end after {} bytes, need a GLB header and chunk", bytes.size()));
+        if (bytes.size() < 20)
+            refuse_file(byte(bytes.size()),
+                        fmt::format("found the end after {} bytes, need a GLB header and chunk", bytes.size()));
         if (u32_at(bytes, 4) != 2) refuse_file(byte(4), fmt::format("found GLB version {}, need 2", u32_at(bytes, 4)));
         const std::uint64_t length = u32_at(bytes, 8);
-        if (length != bytes.size()) refuse_file(byte(8), fmt::format("found a length of {}, need {}, the file's size", length, bytes.size()));
+        if (length != bytes.size())
+            refuse_file(byte(8), fmt::format("found a length of {}, need {}, the file's size", length, bytes.size()));
         std::size_t at = 12;
         for (int chunk = 0; at < bytes.size(); ++chunk) {
-            if (bytes.size() - at < 8) refuse_file(byte(at), fmt::format("found {} bytes, need a chunk header of 8", bytes.size() - at));
+            if (bytes.size() - at < 8)
+                refuse_file(byte(at), fmt::format("found {} bytes, need a chunk header of 8", bytes.size() - at));
             const std::uint64_t size = u32_at(bytes, at);
             const std::uint32_t type = u32_at(bytes, at + 4);
             at += 8;
-            if (size > bytes.size() - at) refuse_file(byte(at - 8), fmt::format("found a chunk of {} bytes, need at most {}", size, bytes.size() - at));
-            if (size % 4 != 0) refuse_file(byte(at - 8), fmt::format("found a chunk of {} bytes, need a multiple of 4", size));
+            if (size > bytes.size() - at)
+                refuse_file(byte(at - 8),
+                            fmt::format("found a chunk of {} bytes, need at most {}", size, bytes.size() - at));
+            if (size % 4 != 0)
+                refuse_file(byte(at - 8), fmt::format("found a chunk of {} bytes, need a multiple of 4", size));
             const bool is_json = type == 0x4e4f534a, is_binary = type == 0x004e4942;
-            if (is_json != (chunk == 0)) refuse_file(byte(at - 4), fmt::format("found chunk type {:#010x} as chunk {}, need the JSON chunk first and once", type, chunk));
-            if (is_binary && chunk != 1) refuse_file(byte(at - 4), fmt::format("found a binary chunk as chunk {}, need it as chunk 1", chunk));
+            if (is_json != (chunk == 0))
+                refuse_file(byte(at - 4),
+                            fmt::format("found chunk type {:#010x} as chunk {}, need the JSON chunk first and once",
+                                        type, chunk));
+            if (is_binary && chunk != 1)
+                refuse_file(byte(at - 4), fmt::format("found a binary chunk as chunk {}, need it as chunk 1", chunk));
             const std::span<const std::byte> part(bytes.data() + at, static_cast<std::size_t>(size));
             if (is_json) {
                 text = text_of(part);
@@ -105,9 +122,12 @@ void Document::read_container(const std::vector<std::byte>& bytes) {
 void Document::check_asset() const {
     const JsonValue asset = needed(root(), "asset", JsonKind::Object);
     const JsonValue version = needed(asset, "version", JsonKind::String);
-    if (!version.string().starts_with("2.")) refuse(version, fmt::format("found glTF version {}, need 2.x", quoted_short(version.string())));
+    if (!version.string().starts_with("2."))
+        refuse(version, fmt::format("found glTF version {}, need 2.x", quoted_short(version.string())));
     const std::optional<std::string_view> least = text_in(asset, "minVersion");
-    if (least && *least != "2.0") refuse(*asset.find("minVersion"), fmt::format("found a file for readers of {}, need 2.0", quoted_short(*least)));
+    if (least && *least != "2.0")
+        refuse(*asset.find("minVersion"),
+               fmt::format("found a file for readers of {}, need 2.0", quoted_short(*least)));
 }
 
 std::vector<JsonValue> Document::table(std::string_view name) const {
@@ -130,11 +150,13 @@ void Document::check_nodes() {
         if (nodes_[i].find("name")) static_cast<void>(text_in(nodes_[i], "name"));
         const std::optional<JsonValue> children = member(nodes_[i], "children", JsonKind::Array);
         if (!children) continue;
+        if (children->size() == 0) refuse(*children, "found an empty array, need at least one child or none of it");
         children->for_each_element([&](JsonValue value) {
             const std::uint32_t child = index_of(value, nodes_.size(), "nodes");
             if (child == i) refuse(value, fmt::format("found node {} as its own child, need a tree", i));
             if (parents_[child] != no_parent) {
-                refuse(value, fmt::format("found node {} as child of nodes {} and {}, need one parent", child, parents_[child], i));
+                refuse(value, fmt::format("found node {} as child of nodes {} and {}, need one parent", child,
+                                          parents_[child], i));
             }
             parents_[child] = i;
         });
@@ -150,7 +172,8 @@ void Document::check_nodes() {
             path.push_back(at);
             at = parents_[at];
         }
-        if (at != no_parent && reached[at] == 2) refuse(nodes_[at], fmt::format("found node {} among its own descendants, need a tree", at));
+        if (at != no_parent && reached[at] == 2)
+            refuse(nodes_[at], fmt::format("found node {} among its own descendants, need a tree", at));
         for (const std::uint32_t node : path) reached[node] = 1;
     }
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) static_cast<void>(local(i));
@@ -160,7 +183,8 @@ void Document::check_nodes() {
         std::vector<std::uint32_t> seen;
         roots->for_each_element([&](JsonValue value) {
             const std::uint32_t node = index_of(value, nodes_.size(), "nodes");
-            if (parents_[node] != no_parent) refuse(value, fmt::format("found node {}, which has a parent, need a root", node));
+            if (parents_[node] != no_parent)
+                refuse(value, fmt::format("found node {}, which has a parent, need a root", node));
             seen.push_back(node);
         });
         std::sort(seen.begin(), seen.end());
@@ -182,9 +206,11 @@ Placement Document::local(std::uint32_t node) const {
     double m[16];
     if (numbers_in(json, "matrix", m)) {
         for (const char* const key : {"translation", "rotation", "scale"}) {
-            if (json.find(key)) refuse(json, fmt::format("found both \"matrix\" and \"{}\", need one way to place a node", key));
+            if (json.find(key))
+                refuse(json, fmt::format("found both \"matrix\" and \"{}\", need one way to place a node", key));
         }
-        if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) refuse(*json.find("matrix"), "found a matrix whose last row is not 0 0 0 1, need an affine one");
+        if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+            refuse(*json.find("matrix"), "found a matrix whose last row is not 0 0 0 1, need an affine one");
         place.linear = {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}};
         place.position = {m[12], m[13], m[14]};
         place.rotation = rotation_in_matrix(place.linear);
@@ -220,7 +246,8 @@ std::vector<std::uint32_t> Document::scene_roots() const {
 
 std::string Document::scene_name() const {
     if (scenes_.empty()) return {};
-    return std::string(text_in(scenes_[index_in(root(), "scene", scenes_.size(), "scenes").value_or(0)], "name").value_or(""));
+    return std::string(
+        text_in(scenes_[index_in(root(), "scene", scenes_.size(), "scenes").value_or(0)], "name").value_or(""));
 }
 
 }  // namespace fase::scene::gltf

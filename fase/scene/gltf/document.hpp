@@ -26,15 +26,15 @@ struct Placement {
 /// Triangles as the file has them; several primitives of a mesh are several of these.
 struct Primitive {
     std::uint32_t mesh = 0;
-    std::uint32_t number = 0;                ///< among the primitives of its mesh
-    std::uint32_t positions = 0;             ///< accessor
-    std::optional<std::uint32_t> indices;    ///< accessor
-    std::uint64_t mode = 4;                  ///< 4 triangles, 5 strip, 6 fan; others hold no triangles
+    std::uint32_t number = 0;              ///< among the primitives of its mesh
+    std::uint32_t positions = 0;           ///< accessor
+    std::optional<std::uint32_t> indices;  ///< accessor
+    std::uint64_t mode = 4;                ///< 4 triangles, 5 strip, 6 fan; others hold no triangles
     std::optional<std::uint32_t> material;
 };
 
-/// A glTF file with everything checked that Fase reads of it: after load() no index leads outside, no accessor leaves its buffer, every
-/// node has at most one parent and no ancestor of its own. Functions throw Refusal.
+/// A glTF file with everything checked that Fase reads of it: after load() no index leads outside, no accessor leaves
+/// its buffer, every node has at most one parent and no ancestor of its own. Functions throw Refusal.
 class Document {
 public:
     /// @param bytes of the .gltf or .glb; @param folder where uris start.
@@ -47,14 +47,14 @@ public:
     [[nodiscard]] std::string name(std::uint32_t node) const;
     /// Where the node stands in its parent's frame.
     [[nodiscard]] Placement local(std::uint32_t node) const;
-    /// The roots of the scene that is to be shown: "scene", else the first; of a file without scenes all nodes without a parent.
+    /// The roots of the scene that is to be shown: "scene", else the first; of a file without scenes all nodes without
+    /// a parent.
     [[nodiscard]] std::vector<std::uint32_t> scene_roots() const;
     [[nodiscard]] std::string scene_name() const;
 
-    /// Calls f(node, placement) for `root` and all below it, parents first, children in order. `placement` is the root's own frame times
-    /// what lies between, starting from `start`.
-    template <class F>
-    void walk(std::uint32_t root, const Placement& start, F&& f) const;
+    /// Calls f(node, placement) for `root` and all below it, parents first, children in order. `placement` is the
+    /// root's own frame times what lies between, starting from `start`.
+    template <class F> void walk(std::uint32_t root, const Placement& start, F&& f) const;
 
     [[nodiscard]] std::vector<Primitive> primitives(std::uint32_t mesh) const;
     [[nodiscard]] Colour colour(std::optional<std::uint32_t> material) const;
@@ -90,8 +90,7 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-template <class F>
-void Document::walk(std::uint32_t root, const Placement& start, F&& f) const {
+template <class F> void Document::walk(std::uint32_t root, const Placement& start, F&& f) const {
     struct Level {
         std::vector<std::uint32_t> children;
         std::size_t next = 0;
@@ -101,7 +100,8 @@ void Document::walk(std::uint32_t root, const Placement& start, F&& f) const {
         f(node, placement);
         Level level{{}, 0, placement};
         if (const auto children = nodes_[node].find("children")) {
-            children->for_each_element([&](JsonValue child) { level.children.push_back(static_cast<std::uint32_t>(child.number())); });
+            children->for_each_element(
+                [&](JsonValue child) { level.children.push_back(static_cast<std::uint32_t>(child.number())); });
         }
         return level;
     };

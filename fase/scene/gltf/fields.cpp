@@ -20,11 +20,14 @@ void refuse_file(std::string where, std::string problem, std::string remedy) {
 
 namespace {
 
-[[noreturn]] void refuse_kind(JsonValue at, std::string_view need) { refuse(at, fmt::format("found {}, need {}", name_of(at.kind()), need)); }
+[[noreturn]] void refuse_kind(JsonValue at, std::string_view need) {
+    refuse(at, fmt::format("found {}, need {}", name_of(at.kind()), need));
+}
 
 double checked_number(JsonValue value) {
     if (!value.is(JsonKind::Number)) refuse_kind(value, "a number");
-    if (!(std::abs(value.number()) <= 1e30)) refuse(value, fmt::format("found {}, need a number within 1e30", value.number()));
+    if (!(std::abs(value.number()) <= 1e30))
+        refuse(value, fmt::format("found {}, need a number within 1e30", value.number()));
     return value.number();
 }
 
@@ -62,7 +65,9 @@ std::optional<double> optional_number(JsonValue object, std::string_view key) {
     return checked_number(*value);
 }
 
-double number_in(JsonValue object, std::string_view key, double otherwise) { return optional_number(object, key).value_or(otherwise); }
+double number_in(JsonValue object, std::string_view key, double otherwise) {
+    return optional_number(object, key).value_or(otherwise);
+}
 
 bool flag_in(JsonValue object, std::string_view key, bool otherwise) {
     const std::optional<JsonValue> value = object.find(key);
@@ -85,11 +90,13 @@ std::optional<std::uint64_t> whole_in(JsonValue object, std::string_view key, st
 
 std::uint32_t index_of(JsonValue value, std::size_t count, std::string_view what) {
     const std::uint64_t index = checked_whole(value, 1ull << 53);
-    if (index >= count) refuse(value, fmt::format("found index {}, need one below {}, the number of {}", index, count, what));
+    if (index >= count)
+        refuse(value, fmt::format("found index {}, need one below {}, the number of {}", index, count, what));
     return static_cast<std::uint32_t>(index);
 }
 
-std::optional<std::uint32_t> index_in(JsonValue object, std::string_view key, std::size_t count, std::string_view what) {
+std::optional<std::uint32_t> index_in(JsonValue object, std::string_view key, std::size_t count,
+                                      std::string_view what) {
     const std::optional<JsonValue> value = object.find(key);
     if (!value || (value->is(JsonKind::Number) && value->number() == -1)) return std::nullopt;
     return index_of(*value, count, what);
@@ -98,7 +105,8 @@ std::optional<std::uint32_t> index_in(JsonValue object, std::string_view key, st
 bool numbers_in(JsonValue object, std::string_view key, std::span<double> out) {
     const std::optional<JsonValue> array = member(object, key, JsonKind::Array);
     if (!array) return false;
-    if (array->size() != out.size()) refuse(*array, fmt::format("found {} elements, need {}", array->size(), out.size()));
+    if (array->size() != out.size())
+        refuse(*array, fmt::format("found {} elements, need {}", array->size(), out.size()));
     std::size_t i = 0;
     array->for_each_element([&](JsonValue value) { out[i++] = checked_number(value); });
     return true;
@@ -116,7 +124,8 @@ std::optional<Quatd> rotation_in(JsonValue object, std::string_view key) {
     const Quatd q{v[0], v[1], v[2], v[3]};
     const double squared = length_squared(q);
     if (!(std::abs(std::sqrt(squared) - 1) <= 1e-2)) {
-        refuse(*object.find(key), fmt::format("found a quaternion of length {:.4g}, need length 1", std::sqrt(squared)));
+        refuse(*object.find(key),
+               fmt::format("found a quaternion of length {:.4g}, need length 1", std::sqrt(squared)));
     }
     return std::abs(squared - 1) <= 1e-6 ? q : normalized(q);
 }
@@ -131,7 +140,8 @@ void Notes::unknown_members(JsonValue object, std::string_view name, std::initia
 
 std::vector<std::string> Notes::texts() const {
     std::vector<std::string> all;
-    for (const auto& [text, count] : counts_) all.push_back(count == 1 ? text : fmt::format("{} ({} times)", text, count));
+    for (const auto& [text, count] : counts_)
+        all.push_back(count == 1 ? text : fmt::format("{} ({} times)", text, count));
     return all;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Reading members of JSON objects with their checks; used inside the glTF reader only.
 #include <cstdint>
-#include <limits>
 #include <initializer_list>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>

@@ -21,7 +21,7 @@ export function readPacking(body: Uint8Array, what: string): Packing {
     const method = body[0];
     const packed = body.subarray(8);
     if (method > 1) throw new RecordingError(`${what}: found packing method ${method}, this viewer reads 0 and 1`);
-    const limit = Math.min(mostRawBytes, 16 * mebi + 32 * body.length);
+    const limit = Math.min(mostRawBytes, 4 * mebi + 32 * body.length);
     if (rawLength > limit) throw new RecordingError(`${what}: expands to ${rawLength} bytes, limit ${limit}`);
     if (method === 0 && rawLength !== packed.length)
         throw new RecordingError(`${what}: found ${packed.length} bytes, need ${rawLength}`);

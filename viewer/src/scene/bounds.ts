@@ -1,6 +1,5 @@
 /** World boxes of colliders, from shapes and poses. */
 import type { Collider, Frame, Shape, Tables, Vec3 } from "../model";
-import { combine, rotate } from "./maths";
 import type { Poses } from "./poses";
 
 export interface Bounds {
@@ -8,79 +7,103 @@ export interface Bounds {
     hi: Vec3;
 }
 
-/** How far a shape reaches from `centre` along the world axes when turned by the columns of `turn`; null: endless. */
-function reach(shape: Shape, turn: Vec3[]): { lo: Vec3; hi: Vec3 } | null {
-    const both = (half: Vec3) => ({ lo: [-half[0], -half[1], -half[2]] as Vec3, hi: half });
-    switch (shape.kind) {
-        case "sphere":
-            return both([shape.radius, shape.radius, shape.radius]);
-        case "box":
-            return both([0, 1, 2].map((i) => turn.reduce((sum, column, k) => sum + Math.abs(column[i]) * shape.half[k], 0)) as Vec3);
-        case "capsule":
-            return both(turn[1].map((y) => Math.abs(y) * shape.halfLength + shape.radius) as Vec3);
-        case "cylinder":
-            return both(
-                turn[1].map((y) => Math.abs(y) * shape.halfHeight + Math.sqrt(Math.max(0, 1 - y * y)) * shape.radius) as Vec3,
-            );
-        case "convex hull":
-        case "mesh": {
-            const lo: Vec3 = [Infinity, Infinity, Infinity];
-            const hi: Vec3 = [-Infinity, -Infinity, -Infinity];
-            const { vertices } = shape.mesh;
-            for (let v = 0; v < vertices.length; v += 3)
-                for (let i = 0; i < 3; ++i) {
-                    const x = turn[0][i] * vertices[v] + turn[1][i] * vertices[v + 1] + turn[2][i] * vertices[v + 2];
-                    if (x < lo[i]) lo[i] = x;
-                    if (x > hi[i]) hi[i] = x;
+// Boxes are made for thousands of colliders a picture: these are used again for each.
+const turn = new Float64Array(9);
+const centre = new Float64Array(3);
+const below = new Float64Array(3);
+const above = new Float64Array(3);
+
+/** Sets `turn` (by column) and `centre` to the collider's frame in the world. */
+function placeFrame({ body, pose }: Collider, poses: Poses): void {
+    const r = 4 * body;
+    const [px, py, pz] = pose.position;
+    const [lx, ly, lz, lw] = pose.rotation;
+    const bx = poses.rotations[r];
+    const by = poses.rotations[r + 1];
+    const bz = poses.rotations[r + 2];
+    const bw = poses.rotations[r + 3];
+    const tx = 2 * (by * pz - bz * py);
+    const ty = 2 * (bz * px - bx * pz);
+    const tz = 2 * (bx * py - by * px);
+    centre[0] = poses.positions[3 * body] + px + bw * tx + by * tz - bz * ty;
+    centre[1] = poses.positions[3 * body + 1] + py + bw * ty + bz * tx - bx * tz;
+    centre[2] = poses.positions[3 * body + 2] + pz + bw * tz + bx * ty - by * tx;
+    const x = bw * lx + bx * lw + by * lz - bz * ly;
+    const y = bw * ly - bx * lz + by * lw + bz * lx;
+    const z = bw * lz + bx * ly - by * lx + bz * lw;
+    const w = bw * lw - bx * lx - by * ly - bz * lz;
+    turn[0] = 1 - 2 * (y * y + z * z);
+    turn[1] = 2 * (x * y + z * w);
+    turn[2] = 2 * (x * z - y * w);
+    turn[3] = 2 * (x * y - z * w);
+    turn[4] = 1 - 2 * (x * x + z * z);
+    turn[5] = 2 * (y * z + x * w);
+    turn[6] = 2 * (x * z + y * w);
+    turn[7] = 2 * (y * z - x * w);
+    turn[8] = 1 - 2 * (x * x + y * y);
+}
+
+/** Sets `below` and `above` to how far the shape reaches from `centre` along the world axes; false: it is endless. */
+function measure(shape: Shape): boolean {
+    for (let i = 0; i < 3; ++i) {
+        const up = turn[3 + i];
+        switch (shape.kind) {
+            case "sphere":
+                above[i] = shape.radius;
+                break;
+            case "box":
+                above[i] =
+                    Math.abs(turn[i]) * shape.half[0] + Math.abs(up) * shape.half[1] + Math.abs(turn[6 + i]) * shape.half[2];
+                break;
+            case "capsule":
+                above[i] = Math.abs(up) * shape.halfLength + shape.radius;
+                break;
+            case "cylinder":
+                above[i] = Math.abs(up) * shape.halfHeight + Math.sqrt(Math.max(0, 1 - up * up)) * shape.radius;
+                break;
+            case "half-space":
+                return false;
+            default: {
+                const { vertices } = shape.mesh;
+                let lo = Infinity;
+                let hi = -Infinity;
+                for (let v = 0; v < vertices.length; v += 3) {
+                    const at = turn[i] * vertices[v] + up * vertices[v + 1] + turn[6 + i] * vertices[v + 2];
+                    if (at < lo) lo = at;
+                    if (at > hi) hi = at;
                 }
-            return { lo, hi };
+                below[i] = lo;
+                above[i] = hi;
+                continue;
+            }
         }
-        case "half-space":
-            return null;
+        below[i] = -above[i];
     }
+    return true;
+}
+
+/** Writes the world box of a collider as posed, relative to `origin`, to lo[at…] and hi[at…]; false: it has none (half-space). */
+export function writeWorldBox(
+    lo: Float32Array | Float64Array, hi: Float32Array | Float64Array, at: number,
+    tables: Tables, collider: Collider, poses: Poses, origin: Vec3,
+): boolean {
+    placeFrame(collider, poses);
+    if (!measure(tables.shapes[collider.shape])) return false;
+    for (let i = 0; i < 3; ++i) {
+        lo[at + i] = centre[i] - origin[i] + below[i];
+        hi[at + i] = centre[i] - origin[i] + above[i];
+    }
+    return true;
 }
 
 /** The world box of a collider as posed; null for a half-space. */
 export function worldBox(tables: Tables, collider: Collider, poses: Poses): Bounds | null {
-    const b = 3 * collider.body;
-    const r = 4 * collider.body;
-    const { position, rotation } = combine(
-        {
-            position: [poses.positions[b], poses.positions[b + 1], poses.positions[b + 2]],
-            rotation: [poses.rotations[r], poses.rotations[r + 1], poses.rotations[r + 2], poses.rotations[r + 3]],
-        },
-        collider.pose,
-    );
-    const axes: Vec3[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-    const around = reach(tables.shapes[collider.shape], axes.map((axis) => rotate(rotation, axis)));
-    if (!around) return null;
-    const at = (v: Vec3) => [position[0] + v[0], position[1] + v[1], position[2] + v[2]] as Vec3;
-    return { lo: at(around.lo), hi: at(around.hi) };
+    const lo = new Float64Array(3);
+    const hi = new Float64Array(3);
+    if (!writeWorldBox(lo, hi, 0, tables, collider, poses, [0, 0, 0])) return null;
+    return { lo: [...lo] as Vec3, hi: [...hi] as Vec3 };
 }
 
 /** Is the collider there at the frame? */
 export const isThere = (collider: Collider, frame: Frame): boolean =>
     frame.present[collider.body] === 1 && frame.number >= collider.from && frame.number < collider.to;
-
-/** A box around what is worth looking at: all that moves and, unless much larger, all that does not. */
-export function boundsOfInterest(tables: Tables, poses: Poses): Bounds {
-    const grow = (into: Bounds | null, box: Bounds): Bounds =>
-        into
-            ? {
-                  lo: into.lo.map((x, i) => Math.min(x, box.lo[i])) as Vec3,
-                  hi: into.hi.map((x, i) => Math.max(x, box.hi[i])) as Vec3,
-              }
-            : box;
-    let moving: Bounds | null = null;
-    let all: Bounds | null = null;
-    for (const collider of tables.colliders) {
-        if (!poses.frame || !isThere(collider, poses.frame) || collider.sensor) continue;
-        const box = worldBox(tables, collider, poses);
-        if (!box) continue;
-        all = grow(all, box);
-        if (tables.bodies[collider.body].kind !== 0) moving = grow(moving, box);
-    }
-    const size = (box: Bounds) => Math.hypot(...box.hi.map((x, i) => x - box.lo[i]));
-    if (!all) return { lo: [-2, 0, -2], hi: [2, 2, 2] };
-    return moving && size(all) > 2 * size(moving) ? moving : all;
-}

@@ -3,11 +3,13 @@ import { PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../model";
 
-const from = new Vector3(0.62, 0.42, 1).normalize();
+const from = new Vector3(0.62, 0.3, 1).normalize();
+const margin = 1.06;
 
 export class Camera {
     readonly eye = new PerspectiveCamera(40, 1, 0.1, 1000);
     private readonly controls: OrbitControls;
+    private free = 1;
     private followed: Vector3 | null = null;
 
     constructor(canvas: HTMLCanvasElement, onChange: () => void) {
@@ -26,21 +28,31 @@ export class Camera {
         return this.eye.position.distanceTo(this.controls.target);
     }
 
-    resize(width: number, height: number): void {
+    /** Fits the picture into a window of which panels cover `below` pixels at the bottom: its middle is above them. */
+    resize(width: number, height: number, below: number): void {
         this.eye.aspect = width / Math.max(1, height);
+        this.free = 1 - below / Math.max(1, height);
+        this.eye.setViewOffset(width, height, 0, below / 2, width, height);
         this.eye.updateProjectionMatrix();
     }
 
-    /** Looks at a ball around `centre` from a little above; `low` is the share of the window that panels cover below. */
-    frame(centre: Vector3, radius: number, low: number): void {
-        const half = Math.tan((this.eye.fov * Math.PI) / 360);
-        const narrow = Math.min((1 - low) * 0.95, this.eye.aspect);
-        const distance = (Math.max(radius, 0.2) * 0.95) / (half * narrow);
+    /** Looks from a little above at a box of half sizes `half` around `centre`, so that it fills what is free of the window. */
+    frame(centre: Vector3, half: Vector3): void {
+        const up = new Vector3(0, 1, 0);
+        const right = up.clone().cross(from).normalize();
+        const above = from.clone().cross(right);
+        const tall = Math.tan((this.eye.fov * Math.PI) / 360) * this.free;
+        const wide = Math.tan((this.eye.fov * Math.PI) / 360) * this.eye.aspect;
+        let distance = 0;
+        for (let corner = 0; corner < 8; ++corner) {
+            const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+            const towards = at.dot(from);
+            distance = Math.max(distance, towards + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall) * margin);
+        }
         this.controls.target.copy(centre);
-        this.controls.target.y -= low * half * distance * 0.9;
-        this.eye.position.copy(this.controls.target).addScaledVector(from, distance);
-        this.controls.minDistance = 0.02 * radius;
-        this.controls.maxDistance = 60 * radius;
+        this.eye.position.copy(centre).addScaledVector(from, Math.max(distance, 0.5));
+        this.controls.minDistance = 0.02 * half.length();
+        this.controls.maxDistance = 60 * half.length();
         this.controls.update();
     }
 

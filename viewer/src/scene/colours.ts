@@ -15,7 +15,7 @@ const palette = {
     broken: 0xe0457b,
 };
 /** What a body without a colour of its own is made of: quiet stone and clay tones. */
-const clay = [0xd8c3a0, 0xcbb08a, 0xc7a98b, 0xdacdb4, 0xb9a284, 0xcfae7d];
+const clay = [0xe3d3b5, 0xd9c39c, 0xd8b898, 0xe6dcc8, 0xcbb592, 0xdcbf8a];
 const kindColours: Record<BodyKind, number> = { 0: palette.static, 1: palette.kinematic, 2: palette.dynamic };
 
 const toLinear = (c: number) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
@@ -24,8 +24,8 @@ const linear = Float32Array.from({ length: 256 }, (_, i) => toLinear(i / 255));
 /** A colour of full light for a number, well spread round the wheel (golden angle). */
 function wheel(n: number): number {
     const hue = (n * 0.61803398875) % 1;
-    const value = 0.78 + 0.2 * hash01(n + 7);
-    const saturation = 0.5 + 0.2 * hash01(n + 3);
+    const value = 0.74 + 0.22 * hash01(n + 7);
+    const saturation = 0.34 + 0.2 * hash01(n + 3);
     const channel = (k: number) => {
         const t = (k + hue * 6) % 6;
         return Math.round(255 * (value - value * saturation * Math.max(0, Math.min(t, 4 - t, 1))));
@@ -48,7 +48,7 @@ export function colourOf(row: number, own: number | null, frame: Frame, by: Colo
         return flags & flagAwake ? palette.awake : palette.asleep;
     }
     const island = frame.islands[row];
-    if (island === noIsland) return kindOf(flags) === 1 ? palette.kinematic : 0x59636f;
+    if (island === noIsland) return kindOf(flags) === 1 ? palette.kinematic : 0x8791a0;
     return wheel(island);
 }
 
@@ -60,7 +60,7 @@ export function writeLinear(out: Float32Array, at: number, colour: number, shade
 }
 
 /** Neighbours of one colour are told apart by a touch of light. */
-export const shadeOf = (row: number): number => 0.86 + 0.28 * hash01(row * 2 + 1);
+export const shadeOf = (row: number): number => 0.9 + 0.2 * hash01(row * 2 + 1);
 
 export interface LegendKey {
     name: string;
@@ -83,7 +83,7 @@ export function legendOf(by: Colouring): LegendKey[] {
         case "island":
             return [
                 { name: "a colour an island", colour: wheel(5) },
-                { name: "none or asleep", colour: 0x59636f },
+                { name: "none or asleep", colour: 0x8791a0 },
                 { name: "static", colour: palette.static },
             ];
         case "material":

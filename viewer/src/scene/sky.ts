@@ -1,9 +1,9 @@
 /** The sky: a soft gradient round the whole scene, lighter at the horizon, where the fog meets it. */
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry } from "three";
 
-export const horizon = new Color(0x9fb2c4);
-const zenith = new Color(0x2c4a72);
-const below = new Color(0x55626f);
+export const horizon = new Color(0xbccbdb);
+const zenith = new Color(0x3f6ea6);
+const below = new Color(0x7f8c9a);
 
 export function makeSky(): Mesh {
     const material = new ShaderMaterial({

@@ -10,11 +10,14 @@ const sunDirection = new Vector3(0.55, 1, 0.38).normalize();
 export class Stage {
     readonly scene = new Scene();
     private readonly renderer: WebGLRenderer;
-    private readonly sun = new DirectionalLight(0xfff0d8, 3.1);
+    private readonly sun = new DirectionalLight(0xffefd6, 2.55);
+    private width = 1;
+    private height = 1;
+    private drawnShare = 0;
     private readonly fog = new Fog(horizon, 60, 400);
 
-    /** Throws when the browser has no WebGL 2. */
-    constructor(readonly canvas: HTMLCanvasElement) {
+    /** Throws when the browser has no WebGL 2; with `isSoftware`, pictures are made with less work. */
+    constructor(canvas: HTMLCanvasElement, private readonly isSoftware: boolean) {
         this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
         this.renderer.outputColorSpace = SRGBColorSpace;
         this.renderer.toneMapping = NeutralToneMapping;
@@ -22,13 +25,13 @@ export class Stage {
         this.renderer.shadowMap.enabled = true;
         this.renderer.shadowMap.type = PCFShadowMap;
         this.scene.fog = this.fog;
-        this.scene.add(makeSky(), new HemisphereLight(0xcfe0f5, 0x6b6257, 1.25));
+        this.scene.add(makeSky(), new HemisphereLight(0xdbe8fa, 0xa39888, 1.95));
         const back = new DirectionalLight(0xa9c4ff, 0.45);
         back.position.set(-0.7, 0.45, -0.6);
         this.scene.add(back);
 
         this.sun.castShadow = true;
-        const side = this.renderer.capabilities.maxTextureSize >= 8192 ? 4096 : 2048;
+        const side = isSoftware ? 2048 : this.renderer.capabilities.maxTextureSize >= 8192 ? 4096 : 2048;
         this.sun.shadow.mapSize.set(side, side);
         this.sun.shadow.radius = 3;
         this.sun.shadow.intensity = 0.85;
@@ -40,20 +43,27 @@ export class Stage {
     }
 
     resize(width: number, height: number): void {
-        this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-        this.renderer.setSize(width, height, false);
+        this.width = width;
+        this.height = height;
+        this.drawnShare = 0;
     }
 
-    /** Draws one picture; shadows are sharp within `radius` of `focus`. */
-    render(camera: PerspectiveCamera, focus: Vector3, radius: number, distance: number): void {
+    /** Was the last picture drawn with fewer pixels than the screen has? */
+    get isCoarse(): boolean {
+        return this.drawnShare < 1;
+    }
+
+    /** Draws one picture with a `share` of the screen's pixels in each direction; shadows are sharp within `radius` of `focus`. */
+    render(camera: PerspectiveCamera, share: number, focus: Vector3, radius: number, distance: number): void {
+        if (share !== this.drawnShare) {
+            this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, this.isSoftware ? 1 : 2));
+            this.renderer.setSize(this.width, this.height, false);
+            this.drawnShare = share;
+        }
         this.aimSun(focus, radius);
-        this.fog.near = distance + 3 * radius;
-        this.fog.far = 6 * distance + 30 * radius;
+        this.fog.near = distance + 2 * radius;
+        this.fog.far = 4 * distance + 16 * radius;
         this.renderer.render(this.scene, camera);
-    }
-
-    get calls(): number {
-        return this.renderer.info.render.calls;
     }
 
     /** Moves the shadow's window in whole texels, so that edges do not crawl when the camera follows. */

@@ -2,12 +2,13 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Frame, Tables, Vec3 } from "../model";
 import { BodyLayer } from "./bodies";
-import { type Bounds, boundsOfInterest } from "./bounds";
+import type { Bounds } from "./bounds";
 import { Camera } from "./camera";
 import type { Colouring } from "./colours";
 import { ContactLayer } from "./contacts";
 import { makeGround } from "./ground";
 import { Highlight } from "./highlight";
+import { boundsOfInterest } from "./interest";
 import { combine } from "./maths";
 import { type Picked, pick } from "./pick";
 import { Poses } from "./poses";
@@ -25,6 +26,7 @@ export class View {
     private readonly contacts: ContactLayer;
     private readonly highlight: Highlight;
     private readonly centre: Vector3;
+    private readonly half: Vector3;
     private readonly radius: number;
     private width = 1;
     private height = 1;
@@ -33,15 +35,18 @@ export class View {
     private followed: number | null = null;
 
     /** Throws when the browser has no WebGL 2. `onChange`: the camera moved. */
-    constructor(canvas: HTMLCanvasElement, private readonly tables: Tables, first: Frame, onChange: () => void) {
-        this.stage = new Stage(canvas);
+    constructor(
+        canvas: HTMLCanvasElement, private readonly tables: Tables, first: Frame, isSoftware: boolean, onChange: () => void,
+    ) {
+        this.stage = new Stage(canvas, isSoftware);
         this.poses = new Poses(tables.bodies.length);
         this.poses.mix(first, first, 0);
         const bounds = boundsOfInterest(tables, this.poses);
         this.origin = bounds.lo.map((x, i) => Math.round((x + bounds.hi[i]) / 2)) as Vec3;
         const relative = (v: Vec3) => new Vector3(...v).sub(new Vector3(...this.origin));
         this.centre = relative(bounds.lo).add(relative(bounds.hi)).multiplyScalar(0.5);
-        this.radius = Math.max(0.5, relative(bounds.hi).distanceTo(relative(bounds.lo)) / 2);
+        this.half = relative(bounds.hi).sub(relative(bounds.lo)).multiplyScalar(0.5);
+        this.radius = Math.max(0.5, this.half.length());
         this.bodies = new BodyLayer(tables, this.origin);
         this.boxes = new WorldBoxes(tables, this.origin);
         this.contacts = new ContactLayer(this.origin, this.radius * 0.02);
@@ -51,16 +56,17 @@ export class View {
         this.camera = new Camera(canvas, onChange);
     }
 
-    resize(width: number, height: number): void {
+    /** `below`: pixels that panels cover at the bottom. */
+    resize(width: number, height: number, below: number): void {
         this.width = width;
         this.height = height;
         this.stage.resize(width, height);
-        this.camera.resize(width, height);
+        this.camera.resize(width, height, below);
     }
 
-    /** Looks at everything; `low`: the share of the window that panels cover below. */
-    reframe(low: number): void {
-        this.camera.frame(this.centre, this.radius, low);
+    /** Looks at everything. */
+    reframe(): void {
+        this.camera.frame(this.centre, this.half);
     }
 
     /** Shows the mix of two frames. */
@@ -76,15 +82,19 @@ export class View {
         if (this.followed !== null && this.poses.present[this.followed]) this.camera.moveFollowed(this.placeOf(this.followed));
     }
 
-    /** Draws one picture. True while the camera still swings and wants another. */
-    draw(): boolean {
+    /** Draws one picture with a share of the screen's pixels. True while the camera still swings and wants another. */
+    draw(share = 1): boolean {
         const swings = this.camera.update();
         this.highlight.update(this.poses, this.camera.eye);
         const { target, distance } = this.camera;
         const near = target.distanceTo(this.centre) < 2 * this.radius && distance > this.radius;
         const focus = near ? this.centre : target;
-        this.stage.render(this.camera.eye, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
+        this.stage.render(this.camera.eye, share, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
         return swings;
+    }
+
+    get isCoarse(): boolean {
+        return this.stage.isCoarse;
     }
 
     set showsBoxes(on: boolean) {
@@ -151,10 +161,10 @@ export class View {
             // the plane is endless: draw it round the point next to the scene, so that its grid stays fine
             const near = this.centre.clone().addScaledVector(up, -this.centre.clone().sub(at).dot(up));
             const snapped = at.add(near.sub(at).multiplyScalar(1 / (10 * cell)).round().multiplyScalar(10 * cell).projectOnPlane(up));
-            this.stage.add(makeGround(new Matrix4().compose(snapped, turn, new Vector3(1, 1, 1)), true, cell));
+            this.stage.add(makeGround(new Matrix4().compose(snapped, turn, new Vector3(1, 1, 1)), true, cell, 2.5 * this.radius));
         }
         if (found) return;
         const low = new Vector3(0, bounds.lo[1] - this.origin[1] - 0.002 * this.radius, 0);
-        this.stage.add(makeGround(new Matrix4().makeTranslation(low), false, cell));
+        this.stage.add(makeGround(new Matrix4().makeTranslation(low), false, cell, 2.5 * this.radius));
     }
 }

@@ -3,7 +3,7 @@ import {
     BufferAttribute, DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, LineSegments, ShaderMaterial,
 } from "three";
 import { flagAwake, kindOf, type Tables, type Vec3 } from "../model";
-import { isThere, worldBox } from "./bounds";
+import { isThere, writeWorldBox } from "./bounds";
 import { writeLinear } from "./colours";
 import type { Poses } from "./poses";
 
@@ -66,15 +66,12 @@ export class WorldBoxes {
     update(poses: Poses): void {
         const { frame } = poses;
         if (!this.object.visible || !frame) return;
+        const lo = this.lo.array as Float32Array;
+        const hi = this.hi.array as Float32Array;
         let count = 0;
         for (const collider of this.tables.colliders) {
             if (!isThere(collider, frame)) continue;
-            const box = worldBox(this.tables, collider, poses);
-            if (!box) continue;
-            for (let i = 0; i < 3; ++i) {
-                this.lo.array[3 * count + i] = box.lo[i] - this.origin[i];
-                this.hi.array[3 * count + i] = box.hi[i] - this.origin[i];
-            }
+            if (!writeWorldBox(lo, hi, 3 * count, this.tables, collider, poses, this.origin)) continue;
             const flags = frame.flags[collider.body];
             const colour = kindOf(flags) === 0 ? fixed : flags & flagAwake ? awake : asleep;
             writeLinear(this.colour.array as Float32Array, 3 * count, colour, 1);

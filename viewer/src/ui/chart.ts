@@ -141,6 +141,7 @@ export class Chart {
     ): void {
         context.font = "10px system-ui, sans-serif";
         context.textBaseline = "bottom";
+        let above = Infinity;
         for (const [value, text] of marks) {
             const at = Math.round(y(value)) + 0.5;
             if (at < 0 || at > height) continue;
@@ -151,7 +152,10 @@ export class Chart {
             context.lineTo(width, at);
             context.stroke();
             context.fillStyle = "#aeb9c7";
-            context.fillText(text, 2, at - 1);
+            if (text && above - at > 13) {
+                context.fillText(text, 2, at - 1);
+                above = at;
+            }
         }
     }
 

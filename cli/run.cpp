@@ -1,0 +1,175 @@
+/// The command `fase run`: simulates a scene, tells how it went, records it when asked.
+#include "cli/run.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "cli/interrupt.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/run_summary.hpp"
+#include "cli/scene_look.hpp"
+#include "fase/broad/any_structure.hpp"
+#include "fase/record/recorder.hpp"
+#include "fase/scene/generate.hpp"
+#include "fase/scene/gltf.hpp"
+#include "fase/world/world.hpp"
+
+namespace fase::cli {
+namespace {
+
+constexpr double default_seconds = 10;
+
+bool exists(const std::string& path) {
+    struct stat there {};
+    return ::stat(path.c_str(), &there) == 0;
+}
+
+Result<scene::Scene> load(const RunOptions& options) {
+    if (exists(options.scene)) return scene::read_gltf(options.scene);
+    std::string kinds;
+    for (const scene::Generator& kind : scene::generators()) {
+        if (kind.name == options.scene) return scene::generate(kind.name, {options.count, options.seed});
+        kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
+    }
+    return Error{Status::Io,
+                 printable(options.scene, 200),
+                 "found no such file, need a .gltf or .glb file, or one of " + kinds,
+                 {}};
+}
+
+Settings settings_of(const RunOptions& options, const scene::Scene& scene) {
+    Settings settings = scene::settings_for(scene);
+    if (options.time_step) settings.time_step = static_cast<float>(*options.time_step);
+    if (options.sub_steps) settings.sub_steps = *options.sub_steps;
+    if (options.keep_awake) settings.sleep = false;
+    return settings;
+}
+
+Result<std::uint64_t> steps_of(const RunOptions& options, float time_step) {
+    if (options.steps) return *options.steps;
+    const double steps = std::round(options.seconds.value_or(default_seconds) / double(time_step));
+    if (steps > double(most_steps)) {
+        return Error{Status::BadArgument,
+                     "--seconds",
+                     fmt::format("found {:.0f} steps of {:.6g} s, need at most {}", steps, time_step, most_steps),
+                     {}};
+    }
+    return static_cast<std::uint64_t>(std::max(steps, 1.0));
+}
+
+/// A world filled from a scene, and what is to be done with it.
+struct Run {
+    World world;
+    std::optional<record::Recorder> recorder;
+    RunSummary summary;
+};
+
+Result<Run> prepare(const RunOptions& options) {
+    if (options.structure != "auto") {
+        if (auto structure = broad::AnyStructure::named(options.structure); !structure) {
+            return Error{Status::BadArgument,
+                         "--structure",
+                         fmt::format("found \"{}\", need auto or one of {}", printable(options.structure, 60),
+                                     broad::AnyStructure::names()),
+                         {}};
+        }
+    }
+    if (!options.record.empty()) {
+        if (auto writable = check_output(options.record, options.scene); !writable) return writable.error();
+    }
+    const Result<scene::Scene> scene = load(options);
+    if (!scene) return scene.error();
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const int threads = options.threads > 0 ? options.threads : cores;
+    Result<World> made =
+        World::create(settings_of(options, *scene), {.structure = options.structure, .threads = threads});
+    if (!made) return made.error();
+    const Result<std::vector<BodyId>> ids = scene::instantiate(*scene, *made);
+    if (!ids) {
+        Error error = ids.error();
+        error.where = options.scene + ": " + error.where;
+        return error;
+    }
+    Run run{*std::move(made), {}, {}};
+    run.summary.scene = options.scene;
+    run.summary.bodies = scene->bodies.size();
+    run.summary.dynamic_bodies = scene::dynamic_bodies(*scene);
+    run.summary.shapes = scene->shapes.size();
+    run.summary.joints = scene->joints.size();
+    run.summary.warnings = scene->warnings;
+    run.summary.threads = threads;
+    const Result<std::uint64_t> steps = steps_of(options, run.world.settings().time_step);
+    if (!steps) return steps.error();
+    run.summary.asked_steps = *steps;
+    if (!options.record.empty()) {
+        SceneLook look = look_of(*scene, *ids);
+        if (look.head.title.empty()) look.head.title = printable(options.scene);
+        run.summary.warnings.insert(run.summary.warnings.end(), look.warnings.begin(), look.warnings.end());
+        Result<record::Recorder> recorder = record::Recorder::create(
+            options.record, run.world, look.head, {.durable = options.durable, .contacts = options.record_contacts});
+        if (!recorder) return recorder.error();
+        run.recorder = *std::move(recorder);
+        run.summary.recording = options.record;
+    }
+    return run;
+}
+
+/// Steps until all is done or a signal comes.
+Result<void> simulate(Run& run, ProgressForm form) {
+    RunSummary& summary = run.summary;
+    Progress progress(form, "step", summary.asked_steps);
+    if (run.recorder) {
+        if (auto added = run.recorder->add_frame(run.world); !added) return added.error();
+    }
+    for (std::uint64_t i = 0; i < summary.asked_steps && Interrupts::signal() == 0; ++i) {
+        const Result<StepReport> report = run.world.step();
+        if (!report) return report.error();
+        summary.add(*report);
+        if (run.recorder) {
+            if (auto added = run.recorder->add_frame(run.world); !added) return added.error();
+        }
+        if (progress.due()) progress.update(i + 1, fmt::format("{:.2f} ms  {} awake", report->total_ms, report->awake));
+    }
+    return {};
+}
+
+/// Gives the recording its name, whatever came before, and says what is in it.
+Result<void> finish_recording(Run& run) {
+    if (!run.recorder) return {};
+    const Result<void> finished = run.recorder->finish();
+    run.summary.recorded_frames = run.recorder->writer().frames();
+    run.summary.recorded_bytes = run.recorder->writer().bytes();
+    return finished;
+}
+
+}  // namespace
+
+int run_scene(const RunOptions& options) {
+    Result<Run> run = prepare(options);
+    if (!run) return refuse(run.error());
+    const Interrupts interrupts;
+    const Result<void> simulated = simulate(*run, progress_form(options.json));
+    const Result<void> recorded = finish_recording(*run);
+    if (!simulated) return refuse(simulated.error());
+    if (!recorded) return refuse(recorded.error());
+
+    RunSummary& summary = run->summary;
+    summary.hash = run->world.hash();
+    summary.simulated_seconds = run->world.time();
+    if (summary.step_ms.empty()) {
+        summary.last = run->world.last_report();
+    }
+    summary.add_step_warnings();
+    const std::string text = options.json ? to_json(summary) : to_table(summary);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
+}
+
+}  // namespace fase::cli

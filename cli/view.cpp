@@ -1,0 +1,102 @@
+/// Opens a recording and shows it the way that was asked for.
+#include "cli/view.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "cli/output.hpp"
+#include "cli/view_page.hpp"
+#include "cli/view_server.hpp"
+#include "fase/record/glb_export.hpp"
+#include "fase/record/input_file.hpp"
+#include "fase/record/player.hpp"
+#include "fase/scene/files.hpp"
+
+namespace fase::cli {
+namespace {
+
+void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", printable(text)); }
+
+/// The bytes of a recording as far as they are good.
+Result<std::vector<std::byte>> good_bytes(const record::Player& player) {
+    const Result<record::InputFile> file = record::InputFile::open(player.path());
+    if (!file) return file.error();
+    std::vector<std::byte> bytes(player.good_bytes());
+    if (Result<void> read = (*file).read(0, bytes); !read) return read.error();
+    return bytes;
+}
+
+Result<void> write_page(const record::Player& player, const std::string& name) {
+    const Result<std::vector<std::byte>> recording = good_bytes(player);
+    if (!recording) return recording.error();
+    const Result<std::string> page = self_contained_page(*recording);
+    if (!page) return page.error();
+    return scene::write_file(name, std::as_bytes(std::span(*page)));
+}
+
+Result<void> write_glb(record::Player& player, const std::string& name) {
+    const Result<std::vector<std::byte>> glb = record::export_glb(player);
+    if (!glb) return glb.error();
+    return scene::write_file(name, *glb);
+}
+
+/// Until a signal comes: its number.
+int wait_for_signal(const sigset_t& signals) {
+    int signal = 0;
+    while (sigwait(&signals, &signal) != 0) {
+    }
+    return signal;
+}
+
+int serve(const record::Player& player, const ViewOptions& options) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    Result<ViewServer> server = ViewServer::listen(options.file, options.port);
+    if (!server) return refuse(server.error());
+    std::thread answering([&] { (*server).run(); });
+    fmt::print("{}: {} frames, {} bodies\nhttp://127.0.0.1:{}/   (Ctrl-C ends)\n", printable(player.path()), player.frames(),
+               player.tables().bodies.size(), (*server).port());
+    std::fflush(stdout);
+    const int signal = wait_for_signal(signals);
+    (*server).stop();
+    answering.join();
+    return 128 + signal;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+    Result<record::Player> player = record::Player::open(options.file);
+    if (!player) return refuse(player.error());
+    if (!(*player).lost().empty()) warn((*player).path() + ": " + (*player).lost());
+    std::error_code ignored;
+    if ((*player).path() == options.file && std::filesystem::exists(options.file + ".part", ignored)) {
+        warn(options.file + ".part: stands beside it, of a recording that is running or was never finished");
+    }
+    for (const std::string* out : {&options.html, &options.glb}) {
+        if (out->empty()) continue;
+        if (Result<void> checked = check_output(*out, (*player).path()); !checked) return refuse(checked.error());
+    }
+    if (!options.html.empty()) {
+        if (Result<void> written = write_page(*player, options.html); !written) return refuse(written.error());
+        fmt::print("{}\n", printable(options.html));
+    }
+    if (!options.glb.empty()) {
+        if (Result<void> written = write_glb(*player, options.glb); !written) return refuse(written.error());
+        fmt::print("{}\n", printable(options.glb));
+    }
+    if (!options.html.empty() || !options.glb.empty()) return 0;
+    return serve(*player, options);
+}
+
+}  // namespace fase::cli

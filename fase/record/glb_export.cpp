@@ -1,0 +1,318 @@
+/// Bodies as nodes, motion as channels.
+#include "fase/record/glb_export.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "fase/geometry/mesh.hpp"
+#include "fase/record/creased_mesh.hpp"
+#include "fase/record/glb_builder.hpp"
+#include "fase/record/motion_keys.hpp"
+
+namespace fase::record {
+namespace {
+
+using nlohmann::json;
+
+/// A body's motion while the frames go by.
+struct Motion {
+    Motion(const GlbOptions& options)
+        : positions(options.metres), rotations(options.degrees * 3.14159265358979323846 / 180) {}
+    MotionKeys<Vec3d> positions;
+    MotionKeys<Quatd> rotations;
+    std::vector<std::pair<double, bool>> lives;  ///< from when on it is there or not; only the changes
+};
+
+json to_json(Vec3 v) { return {v.x, v.y, v.z}; }
+json to_json(Quat q) { return {q.x, q.y, q.z, q.w}; }
+bool is_none(Quat q) { return q == Quat{} || q == Quat{0, 0, 0, -1}; }
+
+/// Colour of a body that has none.
+Colour default_colour(const RecordedBody& body, std::uint32_t row) {
+    if (body.kind == 0) return {150, 152, 158, 255};
+    if (body.kind == 1) return {214, 152, 62, 255};
+    constexpr std::array<Colour, 6> dynamic{{{92, 140, 196, 255}, {118, 164, 206, 255}, {196, 110, 92, 255},
+                                             {208, 168, 104, 255}, {124, 168, 122, 255}, {160, 128, 182, 255}}};
+    return dynamic[row * 2654435761u / 715827883u % dynamic.size()];
+}
+float linear_from_srgb(std::uint8_t value) {
+    const float v = float(value) / 255;
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
+/// A recorded shape as triangles with normals.
+RecordedMesh mesh_of(const RecordedShape& shape, int detail) {
+    if (shape.kind == ShapeKind::Hull || shape.kind == ShapeKind::Triangles) {
+        return with_normals(shape.vertices, shape.triangles);
+    }
+    const auto& size = shape.size;
+    Shape exact;
+    switch (shape.kind) {
+        case ShapeKind::Box: exact = Box{{size[0], size[1], size[2]}}; break;
+        case ShapeKind::Capsule: exact = Capsule{size[0], size[1]}; break;
+        case ShapeKind::Cylinder: exact = Cylinder{size[0], size[1]}; break;
+        case ShapeKind::HalfSpace: exact = HalfSpace{}; break;
+        default: exact = Sphere{size[0]}; break;
+    }
+    const TriangleMesh mesh = triangles(exact, detail);
+    std::vector<Triangle> corners;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        corners.push_back({mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
+    }
+    return with_normals(mesh.positions, corners);
+}
+
+class Exporter {
+public:
+    Exporter(Player& player, const GlbOptions& options)
+        : player_(player), tables_(player.tables()), options_(options), motions_(tables_.bodies.size()),
+          parts_(tables_.bodies.size()) {}
+
+    Result<std::vector<std::byte>> run() {
+        document_["asset"] = {{"version", "2.0"}, {"generator", tables_.head.program}};
+        sort_parts();
+        if (Result<void> read = read_motions(); !read) return read.error();
+        add_nodes();
+        return glb_.finish(document_.dump(-1, ' ', false, json::error_handler_t::replace));
+    }
+
+private:
+    /// A mesh of a body: a shape's or one for the picture.
+    using PartKey = std::tuple<bool, std::uint32_t, float, float, float, float, float, float, float>;
+    struct Part {
+        bool is_visual;
+        std::uint32_t source;  ///< row of the shape or mesh
+        LocalPose pose;
+        Colour colour;
+        [[nodiscard]] PartKey key() const {
+            const Vec3 p = pose.position;
+            const Quat q = pose.rotation;
+            return {is_visual, source, p.x, p.y, p.z, q.x, q.y, q.z, q.w};
+        }
+        [[nodiscard]] std::uint32_t colour_key() const {
+            return std::uint32_t(colour.red) << 24 | colour.green << 16 | colour.blue << 8 | colour.alpha;
+        }
+    };
+    struct Accessors {
+        std::uint32_t positions, normals, indices;
+    };
+
+    void sort_parts() {
+        for (const RecordedVisual& visual : tables_.visuals) {
+            if (tables_.meshes[visual.mesh].triangles.empty()) continue;
+            parts_[visual.body].push_back({true, visual.mesh, visual.pose, coloured(visual.colour, visual.body)});
+        }
+        for (const RecordedCollider& collider : tables_.colliders) {
+            std::vector<Part>& parts = parts_[collider.body];
+            const bool has_visuals = !parts.empty() && parts[0].is_visual;
+            const bool ended = collider.end_frame != std::numeric_limits<std::uint64_t>::max();
+            if (has_visuals || collider.sensor || ended) continue;
+            parts.push_back({false, collider.shape, collider.pose, coloured({}, collider.body)});
+        }
+    }
+    [[nodiscard]] Colour coloured(Colour own, std::uint32_t row) const {
+        if (own.alpha != 0) return own;
+        const RecordedBody& body = tables_.bodies[row];
+        return body.colour.alpha != 0 ? body.colour : default_colour(body, row);
+    }
+
+    Result<void> read_motions() {
+        Frame frame;
+        double first = 0;
+        std::vector<std::uint32_t> before, now;
+        for (std::uint64_t k = 0; k < player_.frames(); ++k) {
+            if (Result<void> read = player_.read(k, frame); !read) return read;
+            if (k == 0) {
+                first = frame.time;
+                place_origin(frame);
+            }
+            const double time = k == 0 ? 0 : frame.time - first;
+            if (k != 0 && !(time > end_ && static_cast<float>(time) > static_cast<float>(end_))) continue;
+            end_ = time;
+            now.clear();
+            for (const BodyFrame& body : frame.bodies) {
+                now.push_back(body.row);
+                std::optional<Motion>& motion = motions_[body.row];
+                if (!motion) motion.emplace(options_);
+                motion->positions.add(time, body.pose.position - origin_);
+                motion->rotations.add(time, to_double(body.pose.rotation));
+                if (motion->lives.empty() || !motion->lives.back().second) motion->lives.emplace_back(time, true);
+            }
+            for (const std::uint32_t row : before) {
+                if (!std::binary_search(now.begin(), now.end(), row)) motions_[row]->lives.emplace_back(time, false);
+            }
+            before.swap(now);
+        }
+        return {};
+    }
+    /// Floats far from 0 are coarse: the middle of what moves becomes the origin.
+    void place_origin(const Frame& frame) {
+        Vec3d sum;
+        double count = 0;
+        for (const BodyFrame& body : frame.bodies) {
+            if (body.kind == 0) continue;
+            sum += body.pose.position;
+            count += 1;
+        }
+        if (count > 0 && length(sum) > 1000 * count) {
+            origin_ = {std::round(sum.x / count), std::round(sum.y / count), std::round(sum.z / count)};
+        }
+    }
+
+    std::uint32_t material_of(const Part& part) {
+        const auto [found, is_new] = materials_.try_emplace(part.colour_key(), 0);
+        if (!is_new) return found->second;
+        json& list = document_["materials"];
+        found->second = static_cast<std::uint32_t>(list.size());
+        const Colour c = part.colour;
+        json material{{"pbrMetallicRoughness",
+                       {{"baseColorFactor", {linear_from_srgb(c.red), linear_from_srgb(c.green), linear_from_srgb(c.blue),
+                                             float(c.alpha) / 255}},
+                        {"metallicFactor", 0}, {"roughnessFactor", 0.8}}}};
+        if (c.alpha != 255) material["alphaMode"] = "BLEND";
+        list.push_back(std::move(material));
+        return found->second;
+    }
+
+    /// nullopt when there is nothing to draw.
+    std::optional<Accessors> accessors_of(const Part& part) {
+        const auto [found, is_new] = geometries_.try_emplace(part.key());
+        if (!is_new) return found->second;
+        RecordedMesh mesh = part.is_visual ? tables_.meshes[part.source] : mesh_of(tables_.shapes[part.source], options_.detail);
+        if (mesh.normals.empty()) mesh = with_normals(mesh.vertices, mesh.triangles);
+        for (Vec3& v : mesh.vertices) v = transform(part.pose, v);
+        for (Vec3& n : mesh.normals) {
+            n = normalized(rotate(part.pose.rotation, n));
+            if (!(length_squared(n) > 0.5f)) n = {0, 1, 0};
+        }
+        if (mesh.triangles.empty()) return std::nullopt;
+        found->second = Accessors{glb_.add_positions(mesh.vertices), glb_.add_normals(mesh.normals), glb_.add_indices(mesh.triangles)};
+        return found->second;
+    }
+
+    /// The number of the mesh of these parts; nullopt when there is nothing to draw.
+    std::optional<std::uint32_t> mesh_of_parts(const std::vector<Part>& parts) {
+        std::vector<std::pair<PartKey, std::uint32_t>> key;
+        for (const Part& part : parts) key.emplace_back(part.key(), part.colour_key());
+        const auto [found, is_new] = meshes_.try_emplace(std::move(key));
+        if (!is_new) return found->second;
+        json primitives = json::array();
+        for (const Part& part : parts) {
+            const std::optional<Accessors> at = accessors_of(part);
+            if (!at) continue;
+            primitives.push_back({{"attributes", {{"POSITION", at->positions}, {"NORMAL", at->normals}}}, {"indices", at->indices},
+                                  {"material", material_of(part)}});
+        }
+        if (primitives.empty()) return std::nullopt;
+        json& list = document_["meshes"];
+        found->second = static_cast<std::uint32_t>(list.size());
+        list.push_back({{"primitives", std::move(primitives)}});
+        return found->second;
+    }
+
+    void add_channel(std::size_t node, const char* path, std::uint32_t times, std::uint32_t values, const char* interpolation) {
+        samplers_.push_back({{"input", times}, {"output", values}, {"interpolation", interpolation}});
+        channels_.push_back({{"sampler", samplers_.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+    }
+
+    /// Times of keys as they are stored. Keys that fall together in float are nudged on: times must rise.
+    template <class Key>
+    std::uint32_t add_times(const std::vector<Key>& keys) {
+        std::vector<float> times;
+        for (const Key& key : keys) {
+            float time = static_cast<float>(time_of(key));
+            if (!times.empty() && !(time > times.back())) time = std::nextafter(times.back(), INFINITY);
+            times.push_back(time);
+        }
+        return glb_.add_times(times);
+    }
+    template <class Value>
+    static double time_of(const MotionKey<Value>& key) {
+        return key.time;
+    }
+    static double time_of(const std::pair<double, bool>& change) { return change.first; }
+
+    void add_motion(std::size_t number, json& node, Motion& motion) {
+        const auto& positions = motion.positions.finish();
+        std::vector<Vec3> points;
+        for (const auto& key : positions) points.push_back(to_float(key.value));
+        node["translation"] = to_json(points[0]);
+        if (points.size() > 1) add_channel(number, "translation", add_times(positions), glb_.add_points(points), "LINEAR");
+
+        const auto& rotations = motion.rotations.finish();
+        std::vector<Quat> turns;
+        for (const auto& key : rotations) {
+            Quat q = to_float(key.value);
+            if (!turns.empty()) {
+                const Quat b = turns.back();
+                if (q.x * b.x + q.y * b.y + q.z * b.z + q.w * b.w < 0) q = {-q.x, -q.y, -q.z, -q.w};
+            }
+            turns.push_back(q);
+        }
+        if (!is_none(turns[0])) node["rotation"] = to_json(turns[0]);
+        if (turns.size() > 1) add_channel(number, "rotation", add_times(rotations), glb_.add_rotations(turns), "LINEAR");
+
+        if (motion.lives.size() == 1 && motion.lives[0].first == 0) return;
+        if (motion.lives[0].first > 0) motion.lives.insert(motion.lives.begin(), {0.0, false});
+        std::vector<Vec3> scales;
+        for (const auto& [time, lives] : motion.lives) scales.push_back(lives ? Vec3{1, 1, 1} : Vec3{});
+        node["scale"] = to_json(scales[0]);
+        add_channel(number, "scale", add_times(motion.lives), glb_.add_points(scales), "STEP");
+    }
+
+    void add_nodes() {
+        json nodes = json::array(), children = json::array();
+        nodes.push_back({{"name", tables_.head.title.empty() ? "recording" : tables_.head.title}});
+        if (!(origin_ == Vec3d{})) nodes[0]["translation"] = {origin_.x, origin_.y, origin_.z};
+        for (std::uint32_t row = 0; row < tables_.bodies.size(); ++row) {
+            if (!motions_[row]) continue;
+            json node;
+            const std::string& name = tables_.bodies[row].name;
+            node["name"] = name.empty() ? "body " + std::to_string(tables_.bodies[row].index) : name;
+            if (!parts_[row].empty()) {
+                const std::optional<std::uint32_t> mesh = mesh_of_parts(parts_[row]);
+                if (mesh) node["mesh"] = *mesh;
+            }
+            add_motion(nodes.size(), node, *motions_[row]);
+            children.push_back(nodes.size());
+            nodes.push_back(std::move(node));
+        }
+        if (!children.empty()) nodes[0]["children"] = std::move(children);
+        document_["nodes"] = std::move(nodes);
+        document_["scenes"] = {{{"nodes", {0}}}};
+        document_["scene"] = 0;
+        if (!channels_.empty()) {
+            document_["animations"] = {{{"name", "motion"}, {"channels", std::move(channels_)}, {"samplers", std::move(samplers_)}}};
+        }
+    }
+
+    Player& player_;
+    const Tables& tables_;
+    GlbOptions options_;
+    std::vector<std::optional<Motion>> motions_;
+    std::vector<std::vector<Part>> parts_;  ///< by body row
+    Vec3d origin_;
+    double end_ = 0;
+    GlbBuilder glb_;
+    json document_;
+    json channels_ = json::array(), samplers_ = json::array();
+    std::map<PartKey, std::optional<Accessors>> geometries_;
+    std::map<std::vector<std::pair<PartKey, std::uint32_t>>, std::optional<std::uint32_t>> meshes_;
+    std::map<std::uint32_t, std::uint32_t> materials_;
+};
+
+}  // namespace
+
+Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options) {
+    if (!(options.metres >= 0) || !(options.degrees >= 0) || options.detail < 3 || options.detail > 1000) {
+        return Error{Status::BadArgument, "GlbOptions", "need metres and degrees of 0 or more, detail of 3 to 1000", {}};
+    }
+    return Exporter(player, options).run();
+}
+
+}  // namespace fase::record

@@ -1,0 +1,377 @@
+/// Reads motions, colliders, triggers, materials, filters and joints.
+#include "fase/scene/gltf/physics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+
+namespace fase::scene::gltf {
+namespace {
+
+std::vector<JsonValue> list_in(std::optional<JsonValue> object, std::string_view key) {
+    std::vector<JsonValue> all;
+    const std::optional<JsonValue> array = object ? member(*object, key, JsonKind::Array) : std::nullopt;
+    if (!array) return all;
+    all.reserve(array->size());
+    array->for_each_element([&](JsonValue value) {
+        if (!value.is(JsonKind::Object)) refuse(value, fmt::format("found {}, need an object", name_of(value.kind())));
+        all.push_back(value);
+    });
+    return all;
+}
+
+/// What a joint's limits leave free, as people call it.
+std::string joint_type(JsonValue joint, Notes& notes) {
+    std::array<bool, 3> linear{}, angular{};
+    for (const JsonValue limit : list_in(joint, "limits")) {
+        const bool locks = number_in(limit, "min", -1) == 0 && number_in(limit, "max", 1) == 0;
+        for (const bool turning : {false, true}) {
+            const std::optional<JsonValue> axes =
+                member(limit, turning ? "angularAxes" : "linearAxes", JsonKind::Array);
+            if (!axes) continue;
+            axes->for_each_element([&](JsonValue axis) {
+                const std::uint32_t index = index_of(axis, 3, "axes");
+                if (locks) (turning ? angular : linear)[index] = true;
+            });
+        }
+    }
+    if (!list_in(joint, "drives").empty()) notes.add("joint drives are not simulated yet");
+    const auto moves = 3 - std::count(linear.begin(), linear.end(), true),
+               turns = 3 - std::count(angular.begin(), angular.end(), true);
+    if (moves == 0 && turns == 0) return "fixed";
+    if (moves == 0 && turns == 1) return "hinge";
+    if (moves == 0 && turns == 3) return "ball";
+    if (moves == 1 && turns == 0) return "slider";
+    return fmt::format("{} free axes", moves + turns);
+}
+
+CombineMode combine_mode(JsonValue material, std::string_view key, Notes& notes) {
+    const std::string_view name = text_in(material, key).value_or("average");
+    if (name == "minimum") return CombineMode::Minimum;
+    if (name == "maximum") return CombineMode::Maximum;
+    if (name == "multiply") return CombineMode::Multiply;
+    if (name != "average")
+        notes.add(fmt::format("{} {} is not understood, \"average\" is taken", key, quoted_short(name)));
+    // Fase's own mode, which the extension has no name for.
+    const std::optional<JsonValue> extras = member(material, "extras", JsonKind::Object);
+    const std::optional<JsonValue> own =
+        extras && extras->find("fase") ? member(*extras, "fase", JsonKind::Object) : std::nullopt;
+    if (own && text_in(*own, key) == "geometricMean") return CombineMode::GeometricMean;
+    return CombineMode::Average;
+}
+
+}  // namespace
+
+Physics::Physics(const Document& document, Notes& notes) : document_(document), notes_(notes) {
+    read_shapes("KHR_implicit_shapes", "shapes", ShapeDialect::KhrImplicit, khr_shapes_);
+    read_shapes("KHR_collision_shapes", "shapes", ShapeDialect::KhrCollision, khr_old_shapes_);
+    read_shapes("OMI_physics_shape", "shapes", ShapeDialect::Omi, omi_shapes_);
+    read_shapes("OMI_collider", "colliders", ShapeDialect::OmiCollider, omi_colliders_);
+    if (khr_shapes_.empty()) khr_shapes_ = khr_old_shapes_;
+    read_resources("KHR_physics_rigid_bodies", khr_);
+    read_resources("KHR_rigid_bodies", khr_old_);
+    read_resources("OMI_physics_body", omi_);
+    Resources joints;
+    read_resources("OMI_physics_joint", joints);
+    omi_joints_ = joints.joints;
+}
+
+void Physics::read_shapes(std::string_view extension_name, std::string_view list, ShapeDialect dialect,
+                          std::vector<ShapeSource>& out) {
+    const std::optional<JsonValue> body = extension(document_.root(), extension_name);
+    if (!body) return;
+    notes_.unknown_members(*body, extension_name, {list});
+    for (const JsonValue json : list_in(body, list)) out.push_back(read_shape(json, dialect, document_, notes_));
+}
+
+void Physics::read_resources(std::string_view extension_name, Resources& out) {
+    const std::optional<JsonValue> body = extension(document_.root(), extension_name);
+    if (!body) return;
+    notes_.unknown_members(*body, extension_name,
+                           {"physicsMaterials", "collisionFilters", "physicsJoints", "physicsJointLimits"});
+    out.materials = list_in(body, "physicsMaterials");
+    out.filters = list_in(body, "collisionFilters");
+    out.joints = list_in(body, "physicsJoints");
+}
+
+void Physics::common_motion(JsonValue json, Motion& motion) {
+    motion.json = json;
+    motion.mass = optional_number(json, "mass");
+    if (motion.mass && *motion.mass < 0)
+        refuse(*json.find("mass"), fmt::format("found {} kg, need 0 or more", *motion.mass));
+    motion.centre = vec3_in(json, "centerOfMass");
+    motion.inertia = vec3_in(json, "inertiaDiagonal");
+    if (motion.inertia && (motion.inertia->x < 0 || motion.inertia->y < 0 || motion.inertia->z < 0)) {
+        refuse(*json.find("inertiaDiagonal"), "found a moment of inertia below 0, need 0 or more");
+    }
+    motion.inertia_axes = rotation_in(json, "inertiaOrientation").value_or(Quatd{});
+    motion.linear = vec3_in(json, "linearVelocity").value_or(Vec3d{});
+    motion.angular = vec3_in(json, "angularVelocity").value_or(Vec3d{});
+    motion.gravity = number_in(json, "gravityFactor", 1);
+}
+
+Motion Physics::khr_motion(JsonValue json) {
+    notes_.unknown_members(json, "motion's",
+                           {"isKinematic", "mass", "centerOfMass", "inertiaDiagonal", "inertiaOrientation",
+                            "linearVelocity", "angularVelocity", "gravityFactor"});
+    Motion motion;
+    common_motion(json, motion);
+    if (flag_in(json, "isKinematic", false)) motion.kind = BodyKind::Kinematic;
+    // JSON has no infinity: 0 stands for it.
+    if (motion.mass && *motion.mass == 0) {
+        motion.endless_mass = true;
+        motion.mass.reset();
+    }
+    if (motion.inertia && (motion.inertia->x == 0 || motion.inertia->y == 0 || motion.inertia->z == 0)) {
+        motion.endless_inertia = motion.inertia == Vec3d{};
+        if (!motion.endless_inertia)
+            notes_.add("an infinite moment of inertia about some axes only is not simulated, the shapes' own is taken");
+        motion.inertia.reset();
+    }
+    return motion;
+}
+
+Motion Physics::omi_motion(JsonValue json, std::string_view type) {
+    Motion motion;
+    common_motion(json, motion);
+    if (type == "static")
+        motion.kind = BodyKind::Static;
+    else if (type == "kinematic")
+        motion.kind = BodyKind::Kinematic;
+    else if (type != "dynamic" && type != "rigid")
+        notes_.add(fmt::format("body type {} is not understood, \"dynamic\" is taken", quoted_short(type)));
+    if (!motion.mass || *motion.mass == 0) motion.mass = 1;
+    if (!motion.centre) motion.centre = Vec3d{};
+    if (motion.inertia && (motion.inertia->x == 0 || motion.inertia->y == 0 || motion.inertia->z == 0))
+        motion.inertia.reset();
+    return motion;
+}
+
+std::optional<Motion> Physics::motion(std::uint32_t node) {
+    const JsonValue json = document_.nodes()[node];
+    for (const std::string_view name : {"KHR_physics_rigid_bodies", "KHR_rigid_bodies"}) {
+        const std::optional<JsonValue> body = extension(json, name);
+        if (!body) continue;
+        notes_.unknown_members(*body, name, {"motion", "rigidBody", "collider", "trigger", "joint"});
+        for (const std::string_view key : {"motion", "rigidBody"}) {
+            if (const std::optional<JsonValue> motion = member(*body, key, JsonKind::Object))
+                return khr_motion(*motion);
+        }
+    }
+    const std::optional<JsonValue> body = extension(json, "OMI_physics_body");
+    if (!body) return std::nullopt;
+    // The first version had the motion's members beside "type", and called a trigger a type of body.
+    if (const std::optional<std::string_view> type = text_in(*body, "type")) {
+        if (*type == "trigger") return std::nullopt;
+        return omi_motion(*body, *type);
+    }
+    notes_.unknown_members(*body, "OMI_physics_body", {"motion", "collider", "trigger"});
+    const std::optional<JsonValue> motion = member(*body, "motion", JsonKind::Object);
+    if (!motion) return std::nullopt;
+    notes_.unknown_members(*motion, "motion's",
+                           {"type", "mass", "centerOfMass", "inertiaDiagonal", "inertiaOrientation", "linearVelocity",
+                            "angularVelocity", "gravityFactor"});
+    const std::optional<std::string_view> type = text_in(*motion, "type");
+    if (!type) notes_.add("a motion without a type is taken as \"dynamic\"");
+    return omi_motion(*motion, type.value_or("dynamic"));
+}
+
+const ShapeSource* Physics::khr_geometry(JsonValue geometry, const std::vector<ShapeSource>& shapes) {
+    notes_.unknown_members(geometry, "geometry's", {"shape", "node", "mesh", "convexHull"});
+    const std::optional<std::uint32_t> shape = index_in(geometry, "shape", shapes.size(), "shapes");
+    const std::optional<std::uint32_t> node = index_in(geometry, "node", document_.nodes().size(), "nodes");
+    if (shape && node) refuse(geometry, "found both a shape and a node, need one of them");
+    const bool convex = flag_in(geometry, "convexHull", false);
+    if (shape && (!shapes[*shape].mesh || shapes[*shape].convex || !convex)) return &shapes[*shape];
+    if (node) {
+        ShapeSource& source = node_shapes_[{*node, convex}];
+        source.json = geometry;
+        source.node = node;
+        source.convex = convex;
+        return &source;
+    }
+    // An earlier draft named the mesh itself; keys past the nodes' cannot meet theirs.
+    const std::optional<std::uint32_t> mesh =
+        shape ? shapes[*shape].mesh : index_in(geometry, "mesh", document_.meshes().size(), "meshes");
+    if (mesh) {
+        ShapeSource& source = node_shapes_[{static_cast<std::uint32_t>(document_.nodes().size()) + *mesh, convex}];
+        source.json = geometry;
+        source.mesh = mesh;
+        source.convex = convex;
+        return &source;
+    }
+    refuse(geometry, "found neither a shape nor a node, need one of them");
+}
+
+void Physics::add_uses(JsonValue body, std::string_view key, bool sensor, const std::vector<ShapeSource>& shapes,
+                       const Resources& resources, std::vector<ColliderUse>& out) {
+    const std::optional<JsonValue> json = member(body, key, JsonKind::Object);
+    if (!json) return;
+    notes_.unknown_members(*json, fmt::format("{}'s", key),
+                           {"geometry", "shape", "physicsMaterial", "collisionFilter", "nodes", "convexHull"});
+    if (const std::optional<JsonValue> nodes = member(*json, "nodes", JsonKind::Array)) {
+        nodes->for_each_element(
+            [&](JsonValue value) { static_cast<void>(index_of(value, document_.nodes().size(), "nodes")); });
+        notes_.add("triggers made of several nodes report each of them by itself");
+    }
+    ColliderUse use;
+    use.json = *json;
+    use.sensor = sensor;
+    const std::optional<JsonValue> geometry = member(*json, "geometry", JsonKind::Object);
+    if (geometry)
+        use.source = khr_geometry(*geometry, shapes);
+    else if (const auto shape = index_in(*json, "shape", shapes.size(), "shapes"))
+        use.source = &shapes[*shape];
+    use.material = material(*json, resources);
+    use.filter = filter(*json, resources);
+    if (use.source != nullptr) out.push_back(use);
+}
+
+std::vector<ColliderUse> Physics::colliders(std::uint32_t node) {
+    std::vector<ColliderUse> uses;
+    const JsonValue json = document_.nodes()[node];
+    const auto add = [&](std::string_view name, const std::vector<ShapeSource>& shapes, const Resources& resources) {
+        const std::optional<JsonValue> body = extension(json, name);
+        if (!body) return;
+        add_uses(*body, "collider", false, shapes, resources, uses);
+        add_uses(*body, "trigger", true, shapes, resources, uses);
+    };
+    add("KHR_physics_rigid_bodies", khr_shapes_, khr_);
+    add("KHR_rigid_bodies", khr_shapes_, khr_old_);
+    add("OMI_physics_body", omi_shapes_, omi_);
+    for (const bool old : {false, true}) {
+        // Forerunners that put a shape straight on a node.
+        const std::optional<JsonValue> direct = extension(json, old ? "OMI_collider" : "KHR_collision_shapes");
+        if (!direct) continue;
+        const std::vector<ShapeSource>& shapes = old ? omi_colliders_ : khr_old_shapes_;
+        const auto shape = index_in(*direct, old ? "collider" : "shape", shapes.size(), old ? "colliders" : "shapes");
+        if (!shape) continue;
+        ColliderUse use;
+        use.json = *direct;
+        use.source = &shapes[*shape];
+        use.sensor = old && flag_in(use.source->json, "isTrigger", false);
+        uses.push_back(use);
+    }
+    if (extension(json, "OMI_physics_gravity"))
+        notes_.add("gravity zones (OMI_physics_gravity on a node) are not simulated yet");
+    return uses;
+}
+
+Material Physics::material(JsonValue use, const Resources& resources) {
+    Material material;
+    const auto index = index_in(use, "physicsMaterial", resources.materials.size(), "physics materials");
+    if (!index) return material;
+    const JsonValue json = resources.materials[*index];
+    notes_.unknown_members(
+        json, "physics material's",
+        {"staticFriction", "dynamicFriction", "restitution", "frictionCombine", "restitutionCombine"});
+    const auto amount = [&](std::string_view key, double otherwise) {
+        const double value = number_in(json, key, otherwise);
+        if (value < 0) refuse(*json.find(key), fmt::format("found {}, need 0 or more", value));
+        return value;
+    };
+    const double moving = amount("dynamicFriction", 0.6), resting = amount("staticFriction", moving);
+    if (json.find("dynamicFriction") && resting != moving)
+        notes_.add("static friction that differs from dynamic is not simulated, dynamic is taken");
+    material.friction = static_cast<float>(json.find("dynamicFriction") ? moving : resting);
+    double bounce = amount("restitution", 0);
+    if (bounce > 1) {
+        notes_.add("restitution above 1 is taken as 1");
+        bounce = 1;
+    }
+    material.restitution = static_cast<float>(bounce);
+    material.friction_combine = combine_mode(json, "frictionCombine", notes_);
+    material.restitution_combine = combine_mode(json, "restitutionCombine", notes_);
+    return material;
+}
+
+std::uint64_t Physics::system_bit(std::string_view name) {
+    if (const auto known = systems_.find(name); known != systems_.end()) return known->second;
+    // Fase writes bit n as "bit n"; other names take the first free bit. Bit 0 is of those that are in no system.
+    std::uint64_t bit = 0;
+    constexpr std::string_view prefix = "bit ";
+    int number = -1;
+    if (name.starts_with(prefix)) {
+        const auto [end, problem] = std::from_chars(name.data() + prefix.size(), name.data() + name.size(), number);
+        if (problem == std::errc() && end == name.data() + name.size() && number >= 0 && number < 64)
+            bit = std::uint64_t{1} << number;
+    }
+    if (bit == 0) {
+        bit = ~systems_taken_ & (systems_taken_ + 1);
+        if (bit == 0) notes_.add("collision systems beyond 63 are not told apart from none");
+    }
+    systems_taken_ |= bit;
+    systems_.emplace(std::string(name), bit);
+    return bit;
+}
+
+pairs::CollisionFilter Physics::filter(JsonValue use, const Resources& resources) {
+    pairs::CollisionFilter filter;
+    const auto index = index_in(use, "collisionFilter", resources.filters.size(), "collision filters");
+    if (!index) return filter;
+    const JsonValue json = resources.filters[*index];
+    notes_.unknown_members(json, "collision filter's",
+                           {"collisionSystems", "collideWithSystems", "notCollideWithSystems"});
+    const auto bits = [&](std::string_view key) {
+        std::optional<std::uint64_t> all;
+        const std::optional<JsonValue> names = member(json, key, JsonKind::Array);
+        if (!names) return all;
+        names->for_each_element([&](JsonValue name) {
+            if (!name.is(JsonKind::String)) refuse(name, fmt::format("found {}, need a text", name_of(name.kind())));
+            all = all.value_or(0) | system_bit(name.string());
+        });
+        return all;
+    };
+    filter.category = bits("collisionSystems").value_or(1);
+    if (filter.category == 0) filter.category = 1;
+    const std::optional<std::uint64_t> with = bits("collideWithSystems"), without = bits("notCollideWithSystems");
+    if (with && without) refuse(json, "found both collideWithSystems and notCollideWithSystems, need one of them");
+    if (with) filter.mask = *with;
+    if (without) filter.mask = ~*without;
+    return filter;
+}
+
+std::optional<JointUse> Physics::joint(std::uint32_t node) {
+    const JsonValue json = document_.nodes()[node];
+    const auto read = [&](std::optional<JsonValue> use,
+                          const std::vector<JsonValue>& joints) -> std::optional<JointUse> {
+        if (!use) return std::nullopt;
+        JointUse joint;
+        const auto other = index_in(*use, "connectedNode", document_.nodes().size(), "nodes");
+        const auto kind = index_in(*use, "joint", joints.size(), "physics joints");
+        if (!other || !kind) refuse(*use, "found a joint without connectedNode or joint, need both");
+        joint.other = *other;
+        joint.collide = flag_in(*use, "enableCollision", false);
+        joint.type = joint_type(joints[*kind], notes_);
+        notes_.add(fmt::format("joints ({}) are not simulated yet", joint.type));
+        return joint;
+    };
+    const std::optional<JsonValue> khr = extension(json, "KHR_physics_rigid_bodies");
+    if (khr) {
+        if (auto joint = read(member(*khr, "joint", JsonKind::Object), khr_.joints)) return joint;
+    }
+    const std::optional<JsonValue> old = extension(json, "KHR_rigid_bodies");
+    if (old && old->find("joint")) notes_.add("joints of KHR_rigid_bodies are not understood");
+    const std::optional<JsonValue> omi = extension(json, "OMI_physics_joint");
+    if (omi && omi->find("constraints")) {
+        notes_.add("joints made of constraints (an old OMI_physics_joint) are not understood");
+        return std::nullopt;
+    }
+    return read(omi, omi_joints_);
+}
+
+std::optional<Vec3> Physics::gravity() {
+    const std::optional<JsonValue> json = extension(document_.root(), "OMI_physics_gravity");
+    if (!json) return std::nullopt;
+    notes_.unknown_members(*json, "OMI_physics_gravity", {"gravity", "direction"});
+    const double amount = number_in(*json, "gravity", 9.80665);
+    const Vec3d direction = vec3_in(*json, "direction").value_or(Vec3d{0, -1, 0});
+    const double length = fase::length(direction);
+    if (!(length > 1e-6)) refuse(*json, "found a direction of length 0, need a direction");
+    return to_float(direction * (amount / length));
+}
+
+}  // namespace fase::scene::gltf

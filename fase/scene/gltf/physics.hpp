@@ -1,0 +1,79 @@
+#pragma once
+/// The physics of a glTF file's nodes, the same for every dialect: KHR_physics_rigid_bodies, its forerunner
+/// KHR_rigid_bodies, and OMI_physics_body in its two versions. Used inside the glTF reader only.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fase/scene/gltf/shapes.hpp"
+
+namespace fase::scene::gltf {
+
+/// How a node moves. Vectors in the node's own frame.
+struct Motion {
+    JsonValue json;
+    BodyKind kind = BodyKind::Dynamic;
+    std::optional<double> mass;
+    std::optional<Vec3d> centre;
+    std::optional<Vec3d> inertia;  ///< principal moments
+    Quatd inertia_axes;
+    Vec3d linear, angular;
+    double gravity = 1;
+    bool endless_mass = false, endless_inertia = false;
+};
+
+/// One collider or trigger of a node.
+struct ColliderUse {
+    JsonValue json;
+    const ShapeSource* source = nullptr;
+    Material material;
+    pairs::CollisionFilter filter;
+    bool sensor = false;
+};
+
+/// A joint that begins at a node.
+struct JointUse {
+    std::string type;
+    std::uint32_t other = 0;  ///< node
+    bool collide = false;
+};
+
+/// The physics resources of a document, and what each node makes of them. Everything is checked when it is asked for.
+class Physics {
+public:
+    Physics(const Document& document, Notes& notes);
+    [[nodiscard]] std::optional<Motion> motion(std::uint32_t node);
+    [[nodiscard]] std::vector<ColliderUse> colliders(std::uint32_t node);
+    [[nodiscard]] std::optional<JointUse> joint(std::uint32_t node);
+    /// m/s²; nullopt when the file says nothing of it.
+    [[nodiscard]] std::optional<Vec3> gravity();
+
+private:
+    struct Resources {
+        std::vector<JsonValue> materials, filters, joints;
+    };
+    void read_shapes(std::string_view extension_name, std::string_view list, ShapeDialect dialect,
+                     std::vector<ShapeSource>& out);
+    void read_resources(std::string_view extension_name, Resources& out);
+    [[nodiscard]] Motion khr_motion(JsonValue json);
+    [[nodiscard]] Motion omi_motion(JsonValue json, std::string_view type);
+    void common_motion(JsonValue json, Motion& motion);
+    [[nodiscard]] const ShapeSource* khr_geometry(JsonValue geometry, const std::vector<ShapeSource>& shapes);
+    [[nodiscard]] Material material(JsonValue use, const Resources& resources);
+    [[nodiscard]] pairs::CollisionFilter filter(JsonValue use, const Resources& resources);
+    [[nodiscard]] std::uint64_t system_bit(std::string_view name);
+    void add_uses(JsonValue body, std::string_view key, bool sensor, const std::vector<ShapeSource>& shapes,
+                  const Resources& resources, std::vector<ColliderUse>& out);
+
+    const Document& document_;
+    Notes& notes_;
+    std::vector<ShapeSource> khr_shapes_, khr_old_shapes_, omi_shapes_, omi_colliders_;
+    std::map<std::pair<std::uint32_t, bool>, ShapeSource> node_shapes_;  ///< by node and convexity
+    Resources khr_, khr_old_, omi_;
+    std::vector<JsonValue> omi_joints_;
+    std::map<std::string, std::uint64_t, std::less<>> systems_;
+    std::uint64_t systems_taken_ = 1;
+};
+
+}  // namespace fase::scene::gltf

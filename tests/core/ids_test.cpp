@@ -1,0 +1,142 @@
+/// Ids: good ones are found, stale, foreign and made-up ones are refused.
+#include "fase/core/ids.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <vector>
+
+#include "fase/core/random.hpp"
+
+namespace fase {
+namespace {
+
+struct Thing;
+using ThingId = Id<Thing>;
+using Pool = IdPool<Thing>;
+
+TEST(Id, by_default_names_nothing) {
+    Pool pool(0);
+    EXPECT_FALSE(pool.contains({}));
+    (void)pool.add();
+    EXPECT_FALSE(pool.contains({}));
+    EXPECT_EQ(sizeof(ThingId), 8u);
+}
+
+TEST(IdPool, gives_dense_indices_from_0_and_reuses_the_last_freed_first) {
+    Pool pool(7);
+    const ThingId a = pool.add(), b = pool.add(), c = pool.add();
+    EXPECT_EQ(a.index, 0u);
+    EXPECT_EQ(b.index, 1u);
+    EXPECT_EQ(c.index, 2u);
+    EXPECT_EQ(a.owner, 7);
+    EXPECT_TRUE(pool.remove(a));
+    EXPECT_TRUE(pool.remove(b));
+    EXPECT_EQ(pool.count(), 1u);
+    EXPECT_EQ(pool.size(), 3u);
+    const ThingId d = pool.add();
+    EXPECT_EQ(d.index, b.index);
+    EXPECT_NE(d, b);
+    EXPECT_EQ(pool.id_at(1), d);
+    EXPECT_EQ(pool.id_at(0), std::nullopt);
+    EXPECT_EQ(pool.id_at(9), std::nullopt);
+    EXPECT_FALSE(pool.alive_at(9));
+}
+
+TEST(IdPool, refuses_a_stale_id_though_its_slot_lives_again) {
+    Pool pool(1);
+    const ThingId old = pool.add();
+    EXPECT_TRUE(pool.remove(old));
+    EXPECT_FALSE(pool.contains(old));
+    EXPECT_FALSE(pool.remove(old)) << "twice";
+    const ThingId young = pool.add();
+    ASSERT_EQ(young.index, old.index);
+    EXPECT_FALSE(pool.contains(old));
+    EXPECT_FALSE(pool.remove(old));
+    EXPECT_TRUE(pool.contains(young));
+}
+
+TEST(IdPool, refuses_the_ids_of_another_pool) {
+    Pool mine(1), other(2);
+    const ThingId foreign = other.add();
+    const ThingId own = mine.add();
+    EXPECT_EQ(foreign.index, own.index);
+    EXPECT_EQ(foreign.generation, own.generation);
+    EXPECT_FALSE(mine.contains(foreign));
+    EXPECT_FALSE(mine.remove(foreign));
+    EXPECT_TRUE(mine.contains(own));
+}
+
+TEST(IdPool, refuses_random_numbers) {
+    Pool pool(3);
+    for (int i = 0; i < 1000; ++i) (void)pool.add();
+    Random random(1);
+    for (int i = 0; i < 1000000; ++i) {
+        const std::uint64_t bits = random.next();
+        const auto id = std::bit_cast<ThingId>(bits);
+        // The one way to be right by chance: a real owner, index and generation.
+        const bool real = id.owner == 3 && id.index < 1000 && id.generation == 1;
+        ASSERT_EQ(pool.contains(id), real);
+    }
+}
+
+TEST(IdPool, retires_a_slot_whose_generations_are_used_up) {
+    Pool pool(1);
+    const ThingId first = pool.add();
+    ThingId last = first;
+    for (int i = 1; i < 65535; ++i) {
+        ASSERT_TRUE(pool.remove(last));
+        last = pool.add();
+        ASSERT_EQ(last.index, first.index) << "generation " << i;
+        ASSERT_NE(last, first);
+    }
+    EXPECT_EQ(last.generation, 65535);
+    EXPECT_TRUE(pool.remove(last));
+    const ThingId next = pool.add();
+    EXPECT_NE(next.index, first.index) << "the worn slot must not come back with an old generation";
+    EXPECT_FALSE(pool.contains(first));
+    EXPECT_FALSE(pool.contains(last));
+    EXPECT_FALSE(pool.alive_at(first.index));
+    EXPECT_EQ(pool.count(), 1u);
+}
+
+TEST(IdPool, restored_from_its_parts_goes_on_as_before) {
+    Pool pool(1);
+    std::vector<ThingId> ids;
+    for (int i = 0; i < 20; ++i) ids.push_back(pool.add());
+    for (const std::size_t i : {3u, 17u, 5u}) (void)pool.remove(ids[i]);
+    Pool copy(1);
+    copy.restore(pool.slots(), pool.free_list());
+    EXPECT_EQ(copy.count(), pool.count());
+    EXPECT_EQ(copy.size(), pool.size());
+    for (const ThingId id : ids) EXPECT_EQ(copy.contains(id), pool.contains(id));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(copy.add(), pool.add());
+}
+
+/// Against a list of everything that was ever given out.
+TEST(IdPool, agrees_with_a_plain_list_over_a_long_random_life) {
+    Pool pool(9);
+    std::vector<ThingId> given;
+    std::vector<bool> alive;
+    Random random(2);
+    for (int round = 0; round < 3000; ++round) {
+        if (given.empty() || random.below(5) < 3) {
+            given.push_back(pool.add());
+            alive.push_back(true);
+        } else {
+            const std::size_t i = random.below(given.size());
+            ASSERT_EQ(pool.remove(given[i]), alive[i]);
+            alive[i] = false;
+        }
+        if (round % 50 != 0) continue;
+        std::uint32_t count = 0;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            ASSERT_EQ(pool.contains(given[i]), alive[i]);
+            count += alive[i] ? 1 : 0;
+        }
+        ASSERT_EQ(pool.count(), count);
+    }
+}
+
+}  // namespace
+}  // namespace fase

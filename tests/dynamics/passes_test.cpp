@@ -1,0 +1,189 @@
+// The wide passes against the clear ones, and the pieces of the solver alone.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "fase/core/random.hpp"
+#include "fase/dynamics/colouring.hpp"
+#include "fase/dynamics/contact_passes.hpp"
+#include "fase/dynamics/integrate.hpp"
+#include "fase/dynamics/islands.hpp"
+
+namespace fase::dynamics {
+namespace {
+
+/// Random bodies and blocks of contacts that share no movable body.
+struct Case {
+    std::vector<SolverBody> bodies;
+    std::vector<SolverMass> masses;
+    std::vector<ContactBlock> blocks;
+    explicit Case(std::uint64_t seed, int blocks_wanted, bool one_sided) {
+        Random random(seed);
+        const auto count = static_cast<std::size_t>(blocks_wanted) * block_lanes;
+        bodies.resize(2 * count + 2);
+        masses.resize(bodies.size());
+        for (std::size_t i = 1; i + 1 < bodies.size(); ++i) {
+            SolverBody& b = bodies[i];
+            for (int k = 0; k < 3; ++k) {
+                b.velocity[k] = random.between(-3, 3);
+                b.spin[k] = random.between(-3, 3);
+                b.moved[k] = random.between(-0.01f, 0.01f);
+                b.turned[k] = random.between(-0.01f, 0.01f);
+            }
+            b.inverse_mass = masses[i].inverse_mass = random.between(0.1f, 2);
+            for (const int k : {0, 3, 5}) masses[i].inertia[k] = random.between(1, 4);
+            for (const int k : {1, 2, 4}) masses[i].inertia[k] = random.between(-0.3f, 0.3f);
+        }
+        blocks.resize(static_cast<std::size_t>(blocks_wanted));
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            ContactBlock& k = blocks[b];
+            std::memset(&k, 0, sizeof k);
+            for (int lane = 0; lane < block_lanes; ++lane) {
+                const auto at = static_cast<std::uint32_t>(b * block_lanes + static_cast<std::size_t>(lane));
+                const bool unused = b + 1 == blocks.size() && lane > 4;
+                k.a[lane] = unused ? static_cast<std::uint32_t>(bodies.size() - 1) : one_sided ? 0 : 2 * at + 1;
+                k.b[lane] = unused ? static_cast<std::uint32_t>(bodies.size() - 1) : 2 * at + 2;
+                if (unused) continue;
+                const Vec3 n = normalized(Vec3{random.between(-1, 1), random.between(-1, 1), 1.1f});
+                const Vec3 t = any_perpendicular(n);
+                for (int i = 0; i < 3; ++i) {
+                    k.normal[i][lane] = n[i];
+                    k.tangent[i][lane] = t[i];
+                    k.offset_a[i][lane] = random.between(-1, 1);
+                    k.offset_b[i][lane] = random.between(-1, 1);
+                }
+                k.turn_a[3][lane] = k.turn_b[3][lane] = 1;
+                const auto points = 1 + random.below(4);
+                for (std::size_t i = 0; i < 4; ++i) {
+                    k.point_mass[i][lane] = i < points ? 1.0f : 0.0f;
+                    k.separation[i][lane] = i < points ? random.between(-0.02f, 0.02f) : 1e9f;
+                    k.x[i][lane] = i < points ? random.between(-0.5f, 0.5f) : 0;
+                    k.y[i][lane] = i < points ? random.between(-0.5f, 0.5f) : 0;
+                    k.impulse[i][lane] = i < points ? random.between(0, 1) : 0;
+                }
+                k.friction[lane] = random.between(0, 1);
+            }
+        }
+    }
+};
+
+TEST(ContactPasses, wide_lanes_give_the_bits_of_single_ones) {
+    for (const bool one_sided : {false, true})
+        for (std::uint64_t seed = 0; seed < 50; ++seed) {
+            Case wide(seed, 3, one_sided), clear(seed, 3, one_sided);
+            for (const Pass pass : {Pass::Prepare, Pass::WarmStart, Pass::Biased, Pass::Relax, Pass::Biased, Pass::Relax}) {
+                const auto input = [&](Case& c) {
+                    return PassInput{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
+                };
+                run_pass(pass, wide.blocks.data(), wide.blocks.size(), one_sided, input(wide));
+                run_pass_reference(pass, clear.blocks.data(), clear.blocks.size(), one_sided, input(clear));
+                ASSERT_EQ(std::memcmp(wide.blocks.data(), clear.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)), 0);
+                // The last row takes the writes of unused lanes: nobody reads it.
+                ASSERT_EQ(std::memcmp(wide.bodies.data(), clear.bodies.data(), (wide.bodies.size() - 1) * sizeof(SolverBody)), 0);
+            }
+        }
+}
+
+TEST(ContactPasses, impulses_push_and_stay_inside_the_cone) {
+    Case c(7, 10, false);
+    const PassInput input{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
+    for (const Pass pass : {Pass::Prepare, Pass::Biased, Pass::Relax})
+        run_pass(pass, c.blocks.data(), c.blocks.size(), false, input);
+    for (const ContactBlock& k : c.blocks)
+        for (int lane = 0; lane < block_lanes; ++lane) {
+            float total = 0;
+            for (int i = 0; i < 4; ++i) {
+                EXPECT_GE(k.impulse[i][lane], 0);
+                total += k.impulse[i][lane];
+            }
+            const float tangent = std::hypot(k.friction_impulse[0][lane], k.friction_impulse[1][lane]);
+            EXPECT_LE(tangent, k.friction[lane] * total * 1.0001f + 1e-6f);
+        }
+}
+
+TEST(ContactPasses, impulses_keep_the_momentum_of_both_bodies) {
+    Case c(11, 4, false);
+    const auto momentum = [&] {
+        Vec3d sum;
+        for (std::size_t i = 1; i + 1 < c.bodies.size(); ++i)
+            sum += Vec3d{c.bodies[i].velocity[0], c.bodies[i].velocity[1], c.bodies[i].velocity[2]} *
+                   (1.0 / double(c.bodies[i].inverse_mass));
+        return sum;
+    };
+    const PassInput input{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
+    run_pass(Pass::Prepare, c.blocks.data(), c.blocks.size(), false, input);
+    const Vec3d before = momentum();
+    run_pass(Pass::Biased, c.blocks.data(), c.blocks.size(), false, input);
+    run_pass(Pass::Relax, c.blocks.data(), c.blocks.size(), false, input);
+    EXPECT_LT(length(momentum() - before), 1e-3);
+}
+
+TEST(FreeTurn, keeps_the_angular_momentum_and_holds_the_energy) {
+    const Vec3 moments{1, 2, 2.5f};
+    Quat rotation;
+    Vec3 momentum{3, 1, -2};
+    const Vec3 start = momentum;
+    const auto energy = [&] { return momentum.x * momentum.x / 1 + momentum.y * momentum.y / 2 + momentum.z * momentum.z / 2.5f; };
+    const float first = energy();
+    for (int i = 0; i < 24000; ++i) {
+        free_turn(rotation, momentum, moments, 1.0f / 240);
+        ASSERT_NEAR(energy() / first, 1, 1e-3);
+    }
+    EXPECT_LT(length(rotate(rotation, momentum) - start), 2e-4f * length(start));
+}
+
+TEST(FreeTurn, tangents_are_close_and_odd) {
+    for (float x = 0; x <= 1; x += 0.01f) {
+        EXPECT_NEAR(half_angle_tangent(x), std::tan(x), 2e-3 * std::tan(x) + 1e-7);
+        EXPECT_EQ(half_angle_tangent(-x), -half_angle_tangent(x));
+    }
+    EXPECT_GT(half_angle_tangent(2), half_angle_tangent(1));
+}
+
+TEST(Islands, sets_join_whatever_the_order_and_are_named_by_their_least_member) {
+    Random random(1);
+    for (int round = 0; round < 50; ++round) {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
+        for (int i = 0; i < 30; ++i)
+            links.emplace_back(static_cast<std::uint32_t>(random.below(40)), static_cast<std::uint32_t>(random.below(40)));
+        DisjointSets forward, backward;
+        forward.reset(40);
+        backward.reset(40);
+        for (const auto& [a, b] : links) forward.unite(a, b);
+        for (auto at = links.rbegin(); at != links.rend(); ++at) backward.unite(at->second, at->first);
+        for (std::uint32_t i = 0; i < 40; ++i) {
+            EXPECT_EQ(forward.find(i), backward.find(i));
+            EXPECT_LE(forward.find(i), i);
+        }
+        for (const auto& [a, b] : links) EXPECT_EQ(forward.find(a), forward.find(b));
+    }
+}
+
+TEST(Colouring, no_colour_meets_a_body_twice) {
+    Random random(2);
+    Colouring colouring;
+    colouring.reset(30);
+    std::vector<std::vector<int>> seen(30);
+    int refused = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto a = static_cast<std::uint32_t>(random.below(30)), b = static_cast<std::uint32_t>(random.below(30));
+        if (a == b) continue;
+        const int colour = colouring.colour(a, b);
+        if (colour == Colouring::none) {
+            ++refused;
+            continue;
+        }
+        EXPECT_LT(colour, Colouring::two_sided);
+        for (const std::uint32_t body : {a, b}) {
+            EXPECT_EQ(std::count(seen[body].begin(), seen[body].end(), colour), 0);
+            seen[body].push_back(colour);
+        }
+    }
+    EXPECT_GT(refused, 0);
+    EXPECT_GE(colouring.colour_one_sided(3), Colouring::two_sided);
+}
+
+}  // namespace
+}  // namespace fase::dynamics

@@ -1,0 +1,118 @@
+/// The table of all pairs: complete, symmetric, and the same alone as in a batch.
+#include "fase/narrow/dispatch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fase/narrow/general.hpp"
+#include "tests/narrow/random_shapes.hpp"
+
+namespace fase {
+namespace {
+
+using narrow::collide;
+using narrow::CollideJob;
+using narrow::Manifold;
+using namespace test;
+
+bool same(const Manifold& a, const Manifold& b) {
+    if (a.count != b.count || !(a.normal == b.normal)) return false;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
+        const narrow::ManifoldPoint &p = a.points[i], &q = b.points[i];
+        if (!(p.at == q.at) || p.separation != q.separation || p.feature != q.feature) return false;
+    }
+    return true;
+}
+
+LocalPose random_pose(Random& random) { return {random_in_cube(random) * 1.5f, to_float(random_rotation(random))}; }
+
+TEST(Dispatch, ABatchGivesBitForBitWhatSingleCallsGive) {
+    Random random(1);
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 60; ++i) shapes.push_back(random_shape(random, random.below(AllShapes::count)));
+    std::vector<CollideJob> jobs;
+    std::vector<Manifold> batch(2000);
+    for (Manifold& out : batch) {
+        jobs.push_back({&shapes[random.below(60)], &shapes[random.below(60)], random_pose(random), 0.1f, &out});
+    }
+    narrow::collide_batch(jobs);
+    int touching = 0;
+    for (const CollideJob& job : jobs) {
+        const Manifold alone = collide(*job.a, *job.b, job.b_in_a, job.margin);
+        ASSERT_TRUE(same(*job.out, alone)) << name_of(*job.a) << " " << name_of(*job.b);
+        touching += alone.count > 0;
+    }
+    EXPECT_GT(touching, 200);
+    narrow::collide_batch({});
+}
+
+TEST(Dispatch, EveryPairOfKindsAnswersAndTellsWhichWayItWent) {
+    Random random(2);
+    for (std::size_t i = 0; i < AllShapes::count; ++i) {
+        for (std::size_t k = 0; k < AllShapes::count; ++k) {
+            EXPECT_EQ(narrow::has_special_pair(i, k), narrow::has_special_pair(k, i));
+            const Shape a = random_shape(random, i), b = random_shape(random, k);
+            const LocalPose x{{0, 0.1f, 0}, {}};
+            const Manifold m = collide(a, b, x, 0.1f);
+            const bool grounds = i + 1 == AllShapes::count && k + 1 == AllShapes::count;
+            EXPECT_EQ(m.count > 0, !grounds) << name_of(a) << " " << name_of(b);
+            if (!narrow::has_special_pair(i, k)) {
+                EXPECT_TRUE(same(m, narrow::collide_general(a, b, x, 0.1f))) << name_of(a) << " " << name_of(b);
+            }
+        }
+    }
+    EXPECT_TRUE(narrow::has_special_pair(0, 0));
+    EXPECT_FALSE(narrow::has_special_pair(AllShapes::count, 0));
+    EXPECT_FALSE(narrow::has_special_pair(0, AllShapes::count));
+}
+
+TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactTurnedRound) {
+    Random random(3);
+    for (int i = 0; i < 20000; ++i) {
+        const std::size_t kind_a = random.below(AllShapes::count), kind_b = random.below(AllShapes::count);
+        if (kind_a == kind_b || !narrow::has_special_pair(kind_a, kind_b)) continue;
+        const Shape a = random_shape(random, kind_a), b = random_shape(random, kind_b);
+        const LocalPose x = random_pose(random);
+        const Manifold m = collide(a, b, x, 0.05f);
+        const Manifold back = narrow::turned_round(collide(b, a, inverse(x), 0.05f), x);
+        // Only rounding lies between: a point at the very margin may come or go.
+        if (m.count != back.count) continue;
+        if (m.count == 0 || dot(m.normal, back.normal) < 0.999f) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
+            float nearest = 1e9f;
+            for (std::size_t j = 0; j < static_cast<std::size_t>(m.count); ++j) {
+                nearest = std::min(nearest, length(m.points[k].at - back.points[j].at));
+            }
+            ASSERT_LT(nearest, 1e-3f) << name_of(a) << " " << name_of(b) << " " << i;
+        }
+    }
+}
+
+/// Special pairs are judged by the general path: where both see a contact, normals and least separations agree.
+TEST(Dispatch, SpecialPairsAgreeWithTheGeneralPath) {
+    Random random(4);
+    int compared = 0, different = 0;
+    for (int i = 0; i < 60000; ++i) {
+        const std::size_t kind_a = random.below(AllShapes::count), kind_b = random.below(AllShapes::count);
+        if (!narrow::has_special_pair(kind_a, kind_b)) continue;
+        const Shape a = random_shape(random, kind_a), b = random_shape(random, kind_b);
+        const LocalPose x = random_pose(random);
+        const Manifold special = collide(a, b, x, 0.05f), general = narrow::collide_general(a, b, x, 0.05f);
+        float least = 0.05f, least_general = 0.05f;
+        for (int k = 0; k < special.count; ++k)
+            least = std::min(least, special.points[static_cast<std::size_t>(k)].separation);
+        for (int k = 0; k < general.count; ++k) {
+            least_general = std::min(least_general, general.points[static_cast<std::size_t>(k)].separation);
+        }
+        const float slack = 5e-3f + 0.03f * std::abs(least_general);
+        ASSERT_NEAR(least, least_general, slack) << i << " " << name_of(a) << " " << name_of(b);
+        if (special.count == 0 || general.count == 0) continue;
+        ++compared;
+        // Nearly equal ways out: either is right.
+        different += dot(special.normal, general.normal) < 0.99f;
+    }
+    EXPECT_GT(compared, 5000);
+    EXPECT_LT(different, compared / 50);
+}
+
+}  // namespace
+}  // namespace fase

@@ -1,0 +1,190 @@
+// Bodies that are changed while the world lives.
+#include "fase/world/state.hpp"
+#include "worlds.hpp"
+
+namespace fase {
+namespace {
+
+using namespace test;
+
+TEST(Edit, a_collider_off_the_centre_moves_the_centre_of_mass_and_not_the_frame) {
+    World world = make_world();
+    const auto body = world.add_body({.position = {1, 2, 3}});
+    ASSERT_TRUE(body);
+    ASSERT_TRUE(world.add_collider(*body, Box{}, {.pose = {{1, 0, 0}, {}}}));
+    EXPECT_EQ(state(world, *body).pose.position, (Vec3d{1, 2, 3}));
+    EXPECT_NEAR(state(world, *body).centre.x, 2, 1e-6);
+    EXPECT_NEAR(state(world, *body).mass, 1000, 1e-3);
+    ASSERT_TRUE(world.add_collider(*body, Box{}, {.pose = {{-1, 0, 0}, {}}}));
+    EXPECT_NEAR(state(world, *body).centre.x, 1, 1e-6);
+    EXPECT_NEAR(state(world, *body).mass, 2000, 1e-3);
+}
+
+TEST(Edit, a_compound_stands_on_all_its_parts) {
+    World world = make_world();
+    add_ground(world);
+    const auto table = world.add_body({.position = {0, 1, 0}});
+    ASSERT_TRUE(table);
+    ASSERT_TRUE(world.add_collider(*table, Box{{1, 0.1f, 1}}));
+    for (const float x : {-0.8f, 0.8f})
+        for (const float z : {-0.8f, 0.8f})
+            ASSERT_TRUE(world.add_collider(*table, Cylinder{0.1f, 0.5f}, {.pose = {{x, -0.5f, z}, {}}}));
+    run(world, 3);
+    const BodyState s = state(world, *table);
+    EXPECT_FALSE(s.awake);
+    EXPECT_NEAR(s.pose.position.y, 1, 0.01);
+    EXPECT_NEAR(std::abs(s.pose.rotation.w), 1, 1e-4);
+}
+
+TEST(Edit, filters_groups_and_exclusions_let_bodies_through) {
+    World world = make_world();
+    add_ground(world);
+    add(world, {.kind = BodyKind::Static, .position = {0, 2, 0}}, Box{{3, 0.1f, 3}}, {.filter = {.category = 2, .mask = ~4ull}});
+    const BodyId other = world.bodies().back();
+    const BodyId held = add(world, {.position = {-2, 3, 0}}, Sphere{0.2f});
+    const BodyId filtered = add(world, {.position = {-1, 3, 0}}, Sphere{0.2f}, {.filter = {.category = 4}});
+    const BodyId excluded = add(world, {.position = {1, 3, 0}}, Sphere{0.2f});
+    ASSERT_TRUE(world.exclude_pair(other, excluded));
+    run(world, 2);
+    EXPECT_NEAR(state(world, held).pose.position.y, 2.3, 0.02);
+    EXPECT_NEAR(state(world, filtered).pose.position.y, 0.2, 0.02);
+    EXPECT_NEAR(state(world, excluded).pose.position.y, 0.2, 0.02);
+}
+
+TEST(Edit, bodies_of_one_negative_group_pass_each_other) {
+    World world = make_world();
+    add_ground(world);
+    const BodyId a = add(world, {.position = {0, 0.2, 0}}, Sphere{0.2f}, {.filter = {.group = -3}});
+    const BodyId b = add(world, {.position = {0, 2, 0}}, Sphere{0.2f}, {.filter = {.group = -3}});
+    run(world, 2);
+    EXPECT_NEAR(state(world, a).pose.position.y, 0.2, 0.02);
+    EXPECT_NEAR(state(world, b).pose.position.y, 0.2, 0.02);
+}
+
+TEST(Edit, a_changed_filter_lets_a_resting_body_fall) {
+    World world = make_world();
+    const BodyId floor = add(world, {.kind = BodyKind::Static}, Box{{3, 0.5f, 3}});
+    const BodyId box = add(world, {.position = {0, 1, 0}}, Box{});
+    run(world, 2);
+    EXPECT_FALSE(state(world, box).awake);
+    ASSERT_TRUE(world.set_filter(world.colliders_of(floor)[0], {.category = 1, .mask = 0}));
+    run(world, 1);
+    EXPECT_LT(state(world, box).pose.position.y, -1);
+}
+
+TEST(Edit, axis_locks_hold) {
+    World world = make_world();
+    add_ground(world);
+    const BodyId box = add(world, {.position = {0, 2, 0}, .linear_velocity = {1, 0, 1}, .angular_velocity = {1, 1, 1},
+                                   .locks = {.linear_z = true, .angular_x = true, .angular_y = true, .angular_z = true}}, Box{});
+    run(world, 0.5);
+    const BodyState s = state(world, box);
+    EXPECT_NEAR(s.pose.position.x, 0.5, 1e-3);
+    EXPECT_EQ(s.pose.position.z, 0);
+    EXPECT_EQ(s.pose.rotation, Quat{});
+    run(world, 2);
+    EXPECT_EQ(state(world, box).pose.position.z, 0);
+}
+
+TEST(Edit, a_kinematic_body_reaches_its_target_and_carries_others) {
+    World world = make_world();
+    const BodyId lift = add(world, {.kind = BodyKind::Kinematic}, Box{{2, 0.5f, 2}});
+    const BodyId box = add(world, {.position = {0, 1, 0}}, Box{});
+    for (int i = 1; i <= 60; ++i) {
+        const float angle = 0.01f * static_cast<float>(i);
+        ASSERT_TRUE(world.move_kinematic(lift, {{0, 0.02 * i, 0}, rotation_about(Vec3{0, 1, 0}, angle)}, 1.0f / 60));
+        ASSERT_TRUE(world.step());
+    }
+    EXPECT_NEAR(state(world, lift).pose.position.y, 1.2, 1e-4);
+    EXPECT_NEAR(state(world, lift).pose.rotation.y, std::sin(0.3), 1e-4);
+    EXPECT_NEAR(state(world, box).pose.position.y, 2.2, 0.02);
+    EXPECT_NEAR(state(world, box).pose.rotation.y, std::sin(0.3), 0.01);
+}
+
+TEST(Edit, a_body_changes_its_kind) {
+    World world = make_world();
+    add_ground(world);
+    const BodyId box = add(world, {.kind = BodyKind::Static, .position = {0, 3, 0}}, Box{});
+    run(world, 0.5);
+    EXPECT_EQ(state(world, box).pose.position.y, 3);
+    ASSERT_TRUE(world.set_kind(box, BodyKind::Dynamic));
+    run(world, 2);
+    EXPECT_NEAR(state(world, box).pose.position.y, 0.5, 0.02);
+    ASSERT_TRUE(world.set_kind(box, BodyKind::Static));
+    const BodyId ball = add(world, {.position = {0, 3, 0}}, Sphere{});
+    run(world, 2);
+    EXPECT_NEAR(state(world, ball).pose.position.y, 1.5, 0.02);
+    ASSERT_TRUE(world.set_kind(box, BodyKind::Kinematic));
+    ASSERT_TRUE(world.set_velocity(box, {0, 1, 0}, {}));
+    run(world, 1);
+    EXPECT_NEAR(state(world, ball).pose.position.y, 2.5, 0.05);
+}
+
+TEST(Edit, forces_and_impulses_do_what_newton_says) {
+    Settings settings;
+    settings.gravity = {};
+    World world = make_world(settings);
+    const BodyId a = add(world, {}, Box{});  // 1000 kg, moments 1000 / 6
+    for (int i = 0; i < 60; ++i) {
+        ASSERT_TRUE(world.apply_force(a, {1000, 0, 0}));
+        ASSERT_TRUE(world.step());
+    }
+    EXPECT_NEAR(state(world, a).linear_velocity.x, 1, 1e-4);
+    EXPECT_NEAR(state(world, a).pose.position.x, 0.5, 1e-3);
+    const BodyId b = add(world, {.position = {10, 0, 0}}, Box{});
+    ASSERT_TRUE(world.apply_impulse_at(b, {0, 100, 0}, {10.5, 0, 0}));
+    EXPECT_NEAR(state(world, b).linear_velocity.y, 0.1, 1e-6);
+    EXPECT_NEAR(state(world, b).angular_velocity.z, 50 / (1000.0 / 6), 1e-5);
+    const BodyId c = add(world, {.position = {20, 0, 0}}, Box{});
+    ASSERT_TRUE(world.apply_force_at(c, {0, 600, 0}, {20.5, 0, 0}));
+    ASSERT_TRUE(world.step());
+    EXPECT_NEAR(state(world, c).linear_velocity.y, 0.01, 1e-6);
+    EXPECT_NEAR(state(world, c).angular_velocity.z, 300.0 / 60 / (1000.0 / 6), 1e-5);
+    const BodyId d = add(world, {.position = {30, 0, 0}, .linear_velocity = {1, 0, 0}, .linear_damping = 1}, Sphere{});
+    run(world, 1);
+    EXPECT_NEAR(state(world, d).linear_velocity.x, std::exp(-1.0), 0.002);
+}
+
+TEST(Edit, material_modes_combine_as_named) {
+    EXPECT_FLOAT_EQ(combined(0.2f, CombineMode::Average, 0.6f, CombineMode::Average), 0.4f);
+    EXPECT_FLOAT_EQ(combined(0.1f, CombineMode::GeometricMean, 0.9f, CombineMode::Average), 0.3f);
+    EXPECT_FLOAT_EQ(combined(0.2f, CombineMode::Minimum, 0.6f, CombineMode::Average), 0.2f);
+    EXPECT_FLOAT_EQ(combined(0.2f, CombineMode::Minimum, 0.6f, CombineMode::Multiply), 0.12f);
+    EXPECT_FLOAT_EQ(combined(0.2f, CombineMode::Maximum, 0.6f, CombineMode::Multiply), 0.6f);
+}
+
+TEST(Edit, a_thousand_bodies_come_and_go_and_leave_nothing) {
+    World world = make_world();
+    add_ground(world);
+    const std::size_t shapes = world.state().shapes.size();
+    Random random(9);
+    std::vector<BodyId> bodies;
+    for (int step = 0; step < 100; ++step) {
+        for (int i = 0; i < 10; ++i)
+            bodies.push_back(add(world, {.position = {random.between(-4, 4), random.between(1, 4), random.between(-4, 4)}},
+                                 Box{{0.3f, 0.2f, random.between(0.1f, 0.4f)}}));
+        ASSERT_TRUE(world.step());
+        while (bodies.size() > 60) {
+            const auto at = random.below(bodies.size());
+            ASSERT_TRUE(world.remove_body(bodies[at]));
+            bodies.erase(bodies.begin() + static_cast<long>(at));
+        }
+        ASSERT_TRUE(world.step());
+        ASSERT_EQ(world.state().awake_boxes.broken_invariant(), "");
+    }
+    for (const BodyId body : bodies) ASSERT_TRUE(world.remove_body(body));
+    ASSERT_TRUE(world.step());
+    EXPECT_EQ(world.body_count(), 1u);
+    EXPECT_EQ(world.state().active.size() + world.state().resting.size(), 0u);
+    EXPECT_EQ(world.state().contacts.size(), world.state().free_contacts.size());
+    EXPECT_EQ(world.state().shapes.size() - world.state().free_shapes.size(), shapes);
+}
+
+TEST(Edit, equal_shapes_are_kept_once) {
+    World world = make_world();
+    for (int i = 0; i < 10; ++i) add(world, {.position = {3.0 * i, 0, 0}}, Box{});
+    EXPECT_EQ(world.state().shapes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace fase
