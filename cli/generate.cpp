@@ -13,10 +13,15 @@
 namespace fase::cli {
 namespace {
 
-/// Text that can do no harm on a terminal: as in a JSON string, without its quotes.
+/// Text that can do no harm on a terminal: control characters escaped as in JSON, quotes and backslashes as they are.
 std::string plain(std::string_view text) {
-    const std::string safe = scene::quoted(text);
-    return safe.substr(1, safe.size() - 2);
+    const std::string quoted = scene::quoted(text);
+    std::string safe;
+    for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
+        if (quoted[i] == '\\' && (quoted[i + 1] == '"' || quoted[i + 1] == '\\')) ++i;
+        safe += quoted[i];
+    }
+    return safe;
 }
 
 int refuse(const Error& error) {

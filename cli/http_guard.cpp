@@ -83,7 +83,8 @@ HttpVerdict judge(std::string_view head, int port) {
     const std::size_t line_end = head.find("\r\n");
     if (line_end == head.npos) return malformed;
     bool needs_host = false;
-    if (const HttpVerdict verdict = judge_request_line(head.substr(0, line_end), needs_host); verdict.code != 0) return verdict;
+    if (const HttpVerdict verdict = judge_request_line(head.substr(0, line_end), needs_host); verdict.code != 0)
+        return verdict;
     std::size_t lines = 0, hosts = 0, at = line_end + 2;
     HttpVerdict refused;
     while (at < head.size()) {
@@ -94,7 +95,8 @@ HttpVerdict judge(std::string_view head, int port) {
         if (line.empty()) break;
         if (++lines > most_header_lines) return too_many;
         const std::size_t colon = line.find(':');
-        if (colon == line.npos || line.find_first_of("\r\n") != line.npos || !is_token(line.substr(0, colon))) return malformed;
+        if (colon == line.npos || line.find_first_of("\r\n") != line.npos || !is_token(line.substr(0, colon)))
+            return malformed;
         const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
         if (equals_lower(name, "host")) {
             ++hosts;

@@ -19,8 +19,9 @@ struct HttpVerdict {
 /// @return a verdict as soon as it is already too long
 [[nodiscard]] HttpVerdict judge_unfinished(std::string_view so_far);
 
-/// Judges a whole head, from the request line to the empty line: only GET and HEAD of plain paths, without a body, for this host and from
-/// pages of this host. 400 malformed, 403 another Host or Origin (a page of another site, DNS rebinding), 405 another method, 414, 431.
+/// Judges a whole head, from the request line to the empty line: only GET and HEAD of plain paths, without a body, for
+/// this host and from pages of this host. 400 malformed, 403 another Host or Origin (a page of another site, DNS
+/// rebinding), 405 another method, 414, 431.
 /// @param port that the server listens on; an Origin must name it
 [[nodiscard]] HttpVerdict judge(std::string_view head, int port);
 

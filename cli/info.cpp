@@ -19,6 +19,16 @@
 namespace fase::cli {
 namespace {
 
+/// A JSON string as text that can do no harm on a terminal: without its quotes, control characters still escaped.
+std::string unquoted(std::string_view quoted) {
+    std::string safe;
+    for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
+        if (quoted[i] == '\\' && (quoted[i + 1] == '"' || quoted[i + 1] == '\\')) ++i;
+        safe += quoted[i];
+    }
+    return safe;
+}
+
 /// Facts about a file in their order: printed as lines or as one JSON object.
 class Facts {
 public:
@@ -64,10 +74,9 @@ public:
         for (const Entry& entry : entries_) {
             if (const auto* value = std::get_if<std::string>(&entry.value)) {
                 const bool is_text = value->front() == '"';
-                line(entry.key, is_text ? value->substr(1, value->size() - 2) : *value);
+                line(entry.key, is_text ? unquoted(*value) : *value);
             } else if (const auto* list = std::get_if<std::vector<std::string>>(&entry.value)) {
-                for (std::size_t i = 0; i < list->size(); ++i)
-                    line(i == 0 ? entry.key : "", (*list)[i].substr(1, (*list)[i].size() - 2));
+                for (std::size_t i = 0; i < list->size(); ++i) line(i == 0 ? entry.key : "", unquoted((*list)[i]));
             } else {
                 bool first = true;
                 for (const auto& [name, count] : std::get<Counts>(entry.value)) {
@@ -185,7 +194,10 @@ Result<Facts> trace_facts(const InfoOptions& options, const scene::FileStart& st
 
 Result<Facts> facts_of(const InfoOptions& options) {
     const Result<scene::FileStart> start = scene::read_start(options.file, 16);
-    if (!start) return start.error();
+    if (!start) {
+        const bool unfinished = scene::read_start(options.file + ".part", 16).has_value();
+        return unfinished ? recording_facts(options) : Result<Facts>(start.error());
+    }
     const std::string_view head(reinterpret_cast<const char*>(start->bytes.data()), start->bytes.size());
     if (head.starts_with(record::file_magic.substr(0, 7))) return recording_facts(options);
     if (head.starts_with("AABT")) return trace_facts(options, *start);
@@ -197,8 +209,7 @@ Result<Facts> facts_of(const InfoOptions& options) {
 int run_info(const InfoOptions& options) {
     const Result<Facts> facts = facts_of(options);
     if (!facts) {
-        const std::string text = scene::quoted(facts.error().text());
-        fmt::print(stderr, "fase: error: {}\n", text.substr(1, text.size() - 2));
+        fmt::print(stderr, "fase: error: {}\n", unquoted(scene::quoted(facts.error().text())));
         return facts.status() == Status::Io ? 3 : facts.status() == Status::NoMemory ? 4 : 2;
     }
     const std::string text = options.json ? facts->json() : facts->lines();

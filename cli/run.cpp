@@ -152,9 +152,9 @@ Result<void> finish_recording(Run& run) {
 }  // namespace
 
 int run_scene(const RunOptions& options) {
+    const Interrupts interrupts;
     Result<Run> run = prepare(options);
     if (!run) return refuse(run.error());
-    const Interrupts interrupts;
     const Result<void> simulated = simulate(*run, progress_form(options.json));
     const Result<void> recorded = finish_recording(*run);
     if (!simulated) return refuse(simulated.error());

@@ -64,8 +64,8 @@ int serve(const record::Player& player, const ViewOptions& options) {
     Result<ViewServer> server = ViewServer::listen(options.file, options.port);
     if (!server) return refuse(server.error());
     std::thread answering([&] { (*server).run(); });
-    fmt::print("{}: {} frames, {} bodies\nhttp://127.0.0.1:{}/   (Ctrl-C ends)\n", printable(player.path()), player.frames(),
-               player.tables().bodies.size(), (*server).port());
+    fmt::print("{}: {} frames, {} bodies\nhttp://127.0.0.1:{}/   (Ctrl-C ends)\n", printable(player.path()),
+               player.frames(), player.tables().bodies.size(), (*server).port());
     std::fflush(stdout);
     const int signal = wait_for_signal(signals);
     (*server).stop();

@@ -11,9 +11,10 @@ struct ViewOptions {
     int port = 0;      ///< to serve on; 0: any free one
 };
 
-/// Serves the recording on 127.0.0.1 until SIGINT or SIGTERM, or writes the files that were asked for. Returns the exit code: 0; 2 no
-/// recording; 3 cannot be read or written, or the port is taken; 4 too large; 130 or 143 when a signal ended it. Call before
-/// other threads are started: the two signals are blocked in the calling thread and in those that it makes.
+/// Serves the recording on 127.0.0.1 until SIGINT or SIGTERM, or writes the files that were asked for. Returns the exit
+/// code: 0; 2 no recording; 3 cannot be read or written, or the port is taken; 4 too large; 130 or 143 when a signal
+/// ended it. Call before other threads are started: the two signals are blocked in the calling thread and in those that
+/// it makes.
 int run_view(const ViewOptions& options);
 
 }  // namespace fase::cli

@@ -12,11 +12,12 @@ namespace {
 constexpr std::size_t most_recording_bytes = std::size_t(256) << 20;
 
 void replace_all(std::string& text, std::string_view what, std::string_view with) {
-    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size()) text.replace(at, what.size(), with);
+    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size())
+        text.replace(at, what.size(), with);
 }
 
-/// The script so that no part of it ends the element that it stands in. Inside strings, where alone these can stand, the backslash
-/// changes nothing.
+/// The script so that no part of it ends the element that it stands in. Inside strings, where alone these can stand,
+/// the backslash changes nothing.
 std::string inline_script() {
     std::string text(viewer::script());
     replace_all(text, "</script", "<\\/script");
@@ -28,8 +29,10 @@ std::string inline_script() {
 
 Result<std::string> self_contained_page(std::span<const std::byte> recording) {
     if (recording.size() > most_recording_bytes) {
-        return Error{Status::Capacity, "page", "found a recording of " + std::to_string(recording.size()) +
-                     " bytes, need at most 268435456 for browsers to open it in a page", "watch it with `fase view FILE`"};
+        return Error{Status::Capacity, "page",
+                     "found a recording of " + std::to_string(recording.size()) +
+                         " bytes, need at most 268435456 for browsers to open it in a page",
+                     "watch it with `fase view FILE`"};
     }
     constexpr std::string_view style_link = "<link rel=\"stylesheet\" href=\"viewer.css\">";
     constexpr std::string_view script_link = "<script src=\"viewer.js\"></script>";

@@ -8,8 +8,8 @@
 
 namespace fase::cli {
 
-/// HTML with script, style and recording inside; refers to nothing outside itself. Capacity when the recording is longer than
-/// browsers take inside a page (256 MiB).
+/// HTML with script, style and recording inside; refers to nothing outside itself. Capacity when the recording is
+/// longer than browsers take inside a page (256 MiB).
 Result<std::string> self_contained_page(std::span<const std::byte> recording);
 
 }  // namespace fase::cli

@@ -147,7 +147,8 @@ void refuse(httplib::Response& response, int code, const std::string& reason) {
 
 class Server : public httplib::Server {
 public:
-    Server(std::string recording, Connections& connections) : recording_(std::move(recording)), connections_(connections) {
+    Server(std::string recording, Connections& connections)
+        : recording_(std::move(recording)), connections_(connections) {
         new_task_queue = [this] { return new ConnectionThreads(connections_); };
         set_socket_options([](socket_t socket) {
             const int yes = 1;  // not SO_REUSEPORT: two servers must not share a port
@@ -161,14 +162,19 @@ public:
             return HandlerResponse::Handled;
         });
     }
-    void set_port(int port) { port_ = port; }
+    /// To be called once it is bound.
+    void set_port(int port) {
+        port_ = port;
+        ::listen(svr_sock_, 1024);  // the library's queue of 5 lets clients wait a second each
+    }
 
 private:
     void answer(const httplib::Request& request, httplib::Response& response) const {
         const auto give = [&](std::string_view content, const char* type) {
             response.set_content(content.data(), content.size(), type);
         };
-        if (request.path == "/" || request.path == "/index.html") return give(viewer::page(), "text/html; charset=utf-8");
+        if (request.path == "/" || request.path == "/index.html")
+            return give(viewer::page(), "text/html; charset=utf-8");
         if (request.path == "/viewer.js") return give(viewer::script(), "text/javascript; charset=utf-8");
         if (request.path == "/viewer.css") return give(viewer::style(), "text/css; charset=utf-8");
         if (request.path == "/recording") return give_recording(response);
@@ -184,13 +190,13 @@ private:
         if (!opened) return refuse(response, 404, "the recording cannot be read any more: " + opened.error().text());
         const auto file = std::make_shared<record::InputFile>(std::move(*opened));
         if (file->size() == 0) return refuse(response, 404, "the recording is empty: " + recording_);
-        response.set_content_provider(
-            static_cast<std::size_t>(file->size()), "application/octet-stream",
-            [file](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                std::vector<std::byte> part(std::min(length, std::size_t(1) << 18));
-                if (!file->read(offset, part)) return false;  // it shrank: the connection ends early, the page tells
-                return sink.write(reinterpret_cast<const char*>(part.data()), part.size());
-            });
+        response.set_content_provider(static_cast<std::size_t>(file->size()), "application/octet-stream",
+                                      [file](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                          std::vector<std::byte> part(std::min(length, std::size_t(1) << 18));
+                                          if (!file->read(offset, part))
+                                              return false;  // it shrank: the connection ends early, the page tells
+                                          return sink.write(reinterpret_cast<const char*>(part.data()), part.size());
+                                      });
     }
     bool process_and_close_socket(socket_t socket) override {
         connections_.add(socket);
@@ -243,8 +249,8 @@ Result<ViewServer> ViewServer::listen(const std::string& recording, int port) {
         state->port = state->server.bind_to_port("127.0.0.1", port) ? port : -1;
     }
     if (state->port <= 0) {
-        return Error{Status::Io, "127.0.0.1:" + std::to_string(port), "cannot listen there: the port is in use or not allowed",
-                     "choose another with --port"};
+        return Error{Status::Io, "127.0.0.1:" + std::to_string(port),
+                     "cannot listen there: the port is in use or not allowed", "choose another with --port"};
     }
     state->server.set_port(state->port);
     return ViewServer(std::move(state));

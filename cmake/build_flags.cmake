@@ -26,5 +26,7 @@ function(fase_own_code target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   # g++ 12 warns at designated initializers that leave fields to their defaults, which is what they are for.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
-                                           $<$<BOOL:${FASE_WERROR}>:-Werror> -ffp-contract=off)
+                                           $<$<BOOL:${FASE_WERROR}>:-Werror> -ffp-contract=off
+                                           # g++ 12 fuses in its SLP vectoriser, whatever -ffp-contract says, where FMA is on.
+                                           $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 endfunction()

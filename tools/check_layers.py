@@ -26,7 +26,7 @@ BELOW = {
     "atlas": ["math"],
 }
 # Programs and tests may include every layer, themselves, and these folders.
-PROGRAMS = {"cli": ["bench", "viewer"], "bench": [], "examples": [], "tests": ["bench", "cli"]}
+PROGRAMS = {"cli": ["bench", "viewer"], "bench": [], "examples": [], "viewer": [], "tests": ["bench", "cli"]}
 GENERATED = {"fase/core/version.hpp"}  # written by CMake into the build folder
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')

@@ -10,15 +10,16 @@ const { values } = parseArgs({ options: { out: { type: "string", default: path.j
 
 await mkdir(values.out, { recursive: true });
 await build({
-    absWorkingDir: here,
-    entryPoints: { viewer: "src/main.ts" },
-    outdir: path.resolve(values.out),
-    bundle: true,
-    minify: true,
-    format: "iife",
-    target: "es2022",
-    charset: "utf8",
-    legalComments: "inline",
-    logLevel: "warning",
+  absWorkingDir: here,
+  entryPoints: { viewer: "src/main.ts" },
+  outdir: path.resolve(values.out),
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2022",
+  charset: "utf8",
+  legalComments: "inline",
+  logLevel: "warning",
 });
-for (const name of ["index.html", "viewer.css"]) await copyFile(path.join(here, "src", name), path.join(values.out, name));
+for (const name of ["index.html", "viewer.css"])
+  await copyFile(path.join(here, "src", name), path.join(values.out, name));

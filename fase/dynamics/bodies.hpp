@@ -44,6 +44,7 @@ struct BodyMotion {
     Vec3 angular_velocity;
     float sleep_time = 0;            ///< seconds below the sleep speeds and within the slop of one place
     Vec3 drift;                      ///< metres moved since sleep_time began
+    Vec3 turn;                       ///< radians turned since then
     std::uint32_t island = no_index; ///< least body index of its island as of the last step
 };
 

@@ -182,6 +182,10 @@ void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 
+/// Friction takes this part of its correction a pass: the rest follows in the next ones, and neighbours in a wall do not overshoot each
+/// other.
+constexpr float friction_gain = 0.7f;
+
 /// One Gauss-Seidel pass. `biased`: soft, pushes overlap out; otherwise it relaxes: hard, and with friction.
 template <class V, bool one_sided, bool biased>
 void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
@@ -264,12 +268,12 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
     }
     u.template apply<one_sided>(n * sum, t1 * sy - t2 * sx, ca, cb, ia, ib);
 
-    if constexpr (!biased) {
+    {
         // Friction: a twist about the normal, then both tangents at once inside the cone.
-        const V mu = V::load(k.friction + s);
+        const V mu = V::load(k.friction + s), gain = V::set(friction_gain);
         const Vec<V> rel2 = u.vb + cross(u.wb, cb) - u.va - cross(u.wa, ca), spin2 = u.wb - u.wa;
         const V old_twist = V::load(k.twist_impulse + s), limit = mu * twist_limit;
-        const V twist = min_of(max_of(old_twist - V::load(k.twist_mass + s) * dot(n, spin2), zero - limit), limit);
+        const V twist = min_of(max_of(old_twist - gain * V::load(k.twist_mass + s) * dot(n, spin2), zero - limit), limit);
         twist.store(k.twist_impulse + s);
         const V d = twist - old_twist;
         const V u1 = dot(rel2, t1) + V::load(k.twist_coupling[0] + s) * d;
@@ -277,7 +281,7 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
         const V f0 = V::load(k.friction_mass[0] + s), f1 = V::load(k.friction_mass[1] + s),
                 f2 = V::load(k.friction_mass[2] + s);
         const V old1 = V::load(k.friction_impulse[0] + s), old2 = V::load(k.friction_impulse[1] + s);
-        V new1 = old1 - (f0 * u1 + f1 * u2), new2 = old2 - (f1 * u1 + f2 * u2);
+        V new1 = old1 - gain * (f0 * u1 + f1 * u2), new2 = old2 - gain * (f1 * u1 + f2 * u2);
         const V most = mu * total, squared = new1 * new1 + new2 * new2;
         const V shrink = select_greater(squared, most * most, most / sqrt_of(squared), one);
         new1 = new1 * shrink;

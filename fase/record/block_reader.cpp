@@ -17,7 +17,8 @@ void get_planes(ByteReader& in, std::size_t count, std::vector<std::uint16_t>& w
     const auto low = in.get_bytes(count), high = in.get_bytes(count);
     if (in.failed()) return;
     for (std::size_t i = 0; i < count; ++i) {
-        words[i] = static_cast<std::uint16_t>(std::to_integer<unsigned>(low[i]) | std::to_integer<unsigned>(high[i]) << 8);
+        words[i] =
+            static_cast<std::uint16_t>(std::to_integer<unsigned>(low[i]) | std::to_integer<unsigned>(high[i]) << 8);
     }
 }
 
@@ -143,8 +144,7 @@ bool BlockReader::read_bodies(ByteReader& in) {
     return read_positions(in) && read_rotations(in) && read_moves(in);
 }
 
-template <class Pair>
-bool BlockReader::read_pairs(ByteReader& in, std::size_t least_bytes, std::vector<Pair>& pairs) {
+template <class Pair> bool BlockReader::read_pairs(ByteReader& in, std::size_t least_bytes, std::vector<Pair>& pairs) {
     pairs.assign(in.get_count(least_bytes), {});
     const auto colliders = static_cast<std::int64_t>(tables_->colliders.size());
     std::int64_t before = 0;
@@ -246,7 +246,8 @@ Result<void> BlockReader::next(Frame& frame, bool bodies) {
     for (std::size_t row = 0; row < rows_.size(); ++row) {
         const Row& state = rows_[row];
         if (!state.alive) continue;
-        frame.bodies.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint8_t>(state.flags >> body_kind_shift & 3),
+        frame.bodies.push_back({static_cast<std::uint32_t>(row),
+                                static_cast<std::uint8_t>(state.flags >> body_kind_shift & 3),
                                 (state.flags & body_awake) != 0, (state.flags & body_broken) != 0, state.island,
                                 decode_pose(state.code, tables_->head.quanta_per_metre)});
     }

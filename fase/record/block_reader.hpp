@@ -11,7 +11,8 @@
 
 namespace fase::record {
 
-/// Walks a block. Every number in it is checked: bytes of any content give frames or an Error. The tables must outlive it.
+/// Walks a block. Every number in it is checked: bytes of any content give frames or an Error. The tables must outlive
+/// it.
 class BlockReader {
 public:
     /// Begins before the first frame. Format when the block's own head makes no sense.
@@ -20,7 +21,8 @@ public:
     [[nodiscard]] std::uint32_t frames() const { return frames_; }
     /// Frames read so far.
     [[nodiscard]] std::uint32_t at() const { return at_; }
-    /// Reads the next frame, if there is one; `frame` is replaced, its memory used again. After an Error, only open() helps.
+    /// Reads the next frame, if there is one; `frame` is replaced, its memory used again. After an Error, only open()
+    /// helps.
     /// @param bodies false: leaves frame.bodies empty (quicker on the way to another frame).
     Result<void> next(Frame& frame, bool bodies = true);
 
@@ -43,8 +45,7 @@ private:
     bool read_rotations(ByteReader& in);
     bool read_moves(ByteReader& in);
     bool read_bodies(ByteReader& in);
-    template <class Pair>
-    bool read_pairs(ByteReader& in, std::size_t least_bytes, std::vector<Pair>& pairs);
+    template <class Pair> bool read_pairs(ByteReader& in, std::size_t least_bytes, std::vector<Pair>& pairs);
     bool read_points(ByteReader& in, std::size_t count);
     bool read_hits(ByteReader& in, std::vector<HitFrame>& hits);
     bool read_contacts(ByteReader& in, std::vector<ContactFrame>& contacts);

@@ -15,8 +15,7 @@ std::uint8_t flags_of(const BodyFrame& body) {
 bool fits_16_bits(std::int64_t value) { return value >= -32768 && value <= 32767; }
 
 /// n numbers as n low bytes, then n high bytes.
-template <class Items, class Get>
-void put_planes(ByteWriter& out, const Items& items, const Get& get) {
+template <class Items, class Get> void put_planes(ByteWriter& out, const Items& items, const Get& get) {
     for (const auto& item : items) out.put(static_cast<std::uint8_t>(get(item) & 255));
     for (const auto& item : items) out.put(static_cast<std::uint8_t>(get(item) >> 8));
 }
@@ -28,9 +27,8 @@ public:
     void add(Vec3d point) {
         for (int axis = 0; axis < 3; ++axis) {
             const double quanta = point[axis] * quanta_per_metre_;
-            columns_[static_cast<std::size_t>(axis)].push_back(std::isfinite(quanta) && std::abs(quanta) < 0x1p50
-                                                                   ? std::llround(quanta)
-                                                                   : 0);
+            columns_[static_cast<std::size_t>(axis)].push_back(
+                std::isfinite(quanta) && std::abs(quanta) < 0x1p50 ? std::llround(quanta) : 0);
         }
     }
     void put(ByteWriter& out) const {
@@ -49,8 +47,7 @@ private:
 };
 
 /// The rows of pairs: each a against the one before, each b against its a.
-template <class Pairs>
-void put_pair_columns(ByteWriter& out, const Pairs& pairs) {
+template <class Pairs> void put_pair_columns(ByteWriter& out, const Pairs& pairs) {
     std::int64_t before = 0;
     for (const auto& pair : pairs) {
         out.put_varint(std::int64_t(pair.a) - before);

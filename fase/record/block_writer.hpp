@@ -21,11 +21,14 @@ struct FrameCost {
 /// Collects frames; the caller takes the bytes when the block is full. Memory: one small state a row and the block.
 class BlockWriter {
 public:
-    explicit BlockWriter(const Head& head) : quanta_per_metre_(head.quanta_per_metre), contacts_(head.contacts),
-                                             stages_(head.stage_names.size()), counters_(head.counter_names.size()) {}
+    explicit BlockWriter(const Head& head)
+        : quanta_per_metre_(head.quanta_per_metre),
+          contacts_(head.contacts),
+          stages_(head.stage_names.size()),
+          counters_(head.counter_names.size()) {}
 
-    /// Adds a frame. BadArgument, and nothing changed, when a pose is not finite or farther than 1e9 m from the origin, a
-    /// rotation is not of length 1, rows do not rise, or a list has another length than the head says.
+    /// Adds a frame. BadArgument, and nothing changed, when a pose is not finite or farther than 1e9 m from the origin,
+    /// a rotation is not of length 1, rows do not rise, or a list has another length than the head says.
     Result<void> add(const Frame& frame);
     /// Frames since take().
     [[nodiscard]] std::uint32_t frames() const { return frames_; }

@@ -28,11 +28,11 @@ constexpr std::int64_t unzigzag(std::uint64_t code) {
 /// Appends numbers to a growing run of bytes.
 class ByteWriter {
 public:
-    template <PlainNumber T>
-    void put(T value) {
-        using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t,
-                                        std::conditional_t<sizeof(T) == 4, std::uint32_t,
-                                                           std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
+    template <PlainNumber T> void put(T value) {
+        using Bits =
+            std::conditional_t<sizeof(T) == 8, std::uint64_t,
+                               std::conditional_t<sizeof(T) == 4, std::uint32_t,
+                                                  std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
         const Bits bits = std::bit_cast<Bits>(value);
         for (std::size_t i = 0; i < sizeof(T); ++i) bytes_.push_back(static_cast<std::byte>(bits >> (8 * i)));
     }
@@ -80,11 +80,11 @@ class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-    template <PlainNumber T>
-    T get() {
-        using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t,
-                                        std::conditional_t<sizeof(T) == 4, std::uint32_t,
-                                                           std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
+    template <PlainNumber T> T get() {
+        using Bits =
+            std::conditional_t<sizeof(T) == 8, std::uint64_t,
+                               std::conditional_t<sizeof(T) == 4, std::uint32_t,
+                                                  std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
         if (!has(sizeof(T))) return fail<T>();
         Bits bits = 0;
         for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -140,8 +140,7 @@ private:
     std::size_t checked_count(std::uint64_t count, std::uint64_t least_bytes) {
         return failed_ || count > left() / least_bytes ? fail<std::size_t>() : static_cast<std::size_t>(count);
     }
-    template <class T>
-    T fail() {
+    template <class T> T fail() {
         failed_ = true;
         return T{};
     }

@@ -59,9 +59,8 @@ Result<void> ChunkPacker::append(ChunkType type, std::span<const std::byte> raw,
     const std::size_t room = std::max(ZSTD_compressBound(raw.size()), raw.size());
     out.resize(begin + 8 + packed_head_bytes + room + 4);
     std::byte* packed = out.data() + begin + 8 + packed_head_bytes;
-    std::size_t size = context_->zstd == nullptr
-                           ? 0
-                           : ZSTD_compress2(context_->zstd, packed, room, raw.data(), raw.size());
+    std::size_t size =
+        context_->zstd == nullptr ? 0 : ZSTD_compress2(context_->zstd, packed, room, raw.data(), raw.size());
     bool plain = context_->zstd == nullptr || ZSTD_isError(size) != 0 || size >= raw.size() ||
                  raw.size() > free_raw_bytes + most_packing * (size + packed_head_bytes);
     if (type != frames_chunk) {

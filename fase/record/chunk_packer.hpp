@@ -19,8 +19,8 @@ public:
     ChunkPacker(ChunkPacker&&) noexcept;
     ChunkPacker& operator=(ChunkPacker&&) noexcept;
     ~ChunkPacker();
-    /// Appends the chunk to `out`. Bytes that a reader's limits would refuse in packed form are stored plainly. Capacity when
-    /// `raw` is longer than a chunk may be, NoMemory; then `out` is as it was.
+    /// Appends the chunk to `out`. Bytes that a reader's limits would refuse in packed form are stored plainly.
+    /// Capacity when `raw` is longer than a chunk may be, NoMemory; then `out` is as it was.
     Result<void> append(ChunkType type, std::span<const std::byte> raw, std::vector<std::byte>& out);
 
 private:

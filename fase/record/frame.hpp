@@ -37,16 +37,16 @@ struct ContactFrame {
     std::array<float, 4> separations{}, impulses{};
 };
 
-/// Everything of one step. A frame that was read has positions within half a quantum and rotations within 0.02° of what was
-/// written, all else exactly.
+/// Everything of one step. A frame that was read has positions within half a quantum and rotations within 0.02° of what
+/// was written, all else exactly.
 struct Frame {
     std::uint64_t number = 0;  ///< 0 is the first of the recording; not looked at when writing
     std::uint64_t step = 0;    ///< of the world
     double time = 0;           ///< seconds simulated
     float total_ms = 0;
-    std::vector<float> stage_ms;           ///< as many as the head has stage names
-    std::vector<std::uint64_t> counters;   ///< as many as the head has counter names; below 2^53
-    std::vector<BodyFrame> bodies;         ///< all that live, by rising row
+    std::vector<float> stage_ms;          ///< as many as the head has stage names
+    std::vector<std::uint64_t> counters;  ///< as many as the head has counter names; below 2^53
+    std::vector<BodyFrame> bodies;        ///< all that live, by rising row
     std::vector<ColliderPair> contacts_begun, contacts_ended, sensors_begun, sensors_ended;
     std::vector<HitFrame> hits;
     std::vector<ContactFrame> contacts;  ///< only where the head says so

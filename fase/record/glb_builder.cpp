@@ -82,8 +82,11 @@ Result<std::vector<std::byte>> GlbBuilder::finish(std::string text) {
         length += data_[use].size();  // all are multiples of 4
     }
     for (const Accessor& accessor : accessors_) {
-        json told{{"bufferView", number[static_cast<std::size_t>(accessor.use)]}, {"byteOffset", accessor.begin},
-                  {"componentType", accessor.component}, {"count", accessor.count}, {"type", accessor.type}};
+        json told{{"bufferView", number[static_cast<std::size_t>(accessor.use)]},
+                  {"byteOffset", accessor.begin},
+                  {"componentType", accessor.component},
+                  {"count", accessor.count},
+                  {"type", accessor.type}};
         if (!accessor.least.empty()) {
             told["min"] = accessor.least;
             told["max"] = accessor.most;
@@ -98,7 +101,8 @@ Result<std::vector<std::byte>> GlbBuilder::finish(std::string text) {
     text.append((4 - text.size() % 4) % 4, ' ');
     const std::uint64_t total = 12 + 8 + text.size() + (length != 0 ? 8 + length : 0);
     if (total > 0xffffffffull) {
-        return Error{Status::Capacity, "animation", "needs " + std::to_string(total) + " bytes, a .glb file may have 4294967295",
+        return Error{Status::Capacity, "animation",
+                     "needs " + std::to_string(total) + " bytes, a .glb file may have 4294967295",
                      "export a shorter recording"};
     }
     ByteWriter out;

@@ -14,8 +14,8 @@
 
 namespace fase::record {
 
-/// Numbers go into one buffer, sorted by use; equal runs of times are stored once. Source: Khronos Group 2021, glTF 2.0 specification, 3.6
-/// and 4.
+/// Numbers go into one buffer, sorted by use; equal runs of times are stored once. Source: Khronos Group 2021, glTF 2.0
+/// specification, 3.6 and 4.
 class GlbBuilder {
 public:
     // Each gives the number of its accessor.

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <tuple>
 
 #include "fase/geometry/mesh.hpp"
@@ -36,8 +36,12 @@ bool is_none(Quat q) { return q == Quat{} || q == Quat{0, 0, 0, -1}; }
 Colour default_colour(const RecordedBody& body, std::uint32_t row) {
     if (body.kind == 0) return {150, 152, 158, 255};
     if (body.kind == 1) return {214, 152, 62, 255};
-    constexpr std::array<Colour, 6> dynamic{{{92, 140, 196, 255}, {118, 164, 206, 255}, {196, 110, 92, 255},
-                                             {208, 168, 104, 255}, {124, 168, 122, 255}, {160, 128, 182, 255}}};
+    constexpr std::array<Colour, 6> dynamic{{{92, 140, 196, 255},
+                                             {118, 164, 206, 255},
+                                             {196, 110, 92, 255},
+                                             {208, 168, 104, 255},
+                                             {124, 168, 122, 255},
+                                             {160, 128, 182, 255}}};
     return dynamic[row * 2654435761u / 715827883u % dynamic.size()];
 }
 float linear_from_srgb(std::uint8_t value) {
@@ -70,7 +74,10 @@ RecordedMesh mesh_of(const RecordedShape& shape, int detail) {
 class Exporter {
 public:
     Exporter(Player& player, const GlbOptions& options)
-        : player_(player), tables_(player.tables()), options_(options), motions_(tables_.bodies.size()),
+        : player_(player),
+          tables_(player.tables()),
+          options_(options),
+          motions_(tables_.bodies.size()),
           parts_(tables_.bodies.size()) {}
 
     Result<std::vector<std::byte>> run() {
@@ -170,10 +177,12 @@ private:
         json& list = document_["materials"];
         found->second = static_cast<std::uint32_t>(list.size());
         const Colour c = part.colour;
-        json material{{"pbrMetallicRoughness",
-                       {{"baseColorFactor", {linear_from_srgb(c.red), linear_from_srgb(c.green), linear_from_srgb(c.blue),
-                                             float(c.alpha) / 255}},
-                        {"metallicFactor", 0}, {"roughnessFactor", 0.8}}}};
+        json material{
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor",
+               {linear_from_srgb(c.red), linear_from_srgb(c.green), linear_from_srgb(c.blue), float(c.alpha) / 255}},
+              {"metallicFactor", 0},
+              {"roughnessFactor", 0.8}}}};
         if (c.alpha != 255) material["alphaMode"] = "BLEND";
         list.push_back(std::move(material));
         return found->second;
@@ -183,7 +192,8 @@ private:
     std::optional<Accessors> accessors_of(const Part& part) {
         const auto [found, is_new] = geometries_.try_emplace(part.key());
         if (!is_new) return found->second;
-        RecordedMesh mesh = part.is_visual ? tables_.meshes[part.source] : mesh_of(tables_.shapes[part.source], options_.detail);
+        RecordedMesh mesh =
+            part.is_visual ? tables_.meshes[part.source] : mesh_of(tables_.shapes[part.source], options_.detail);
         if (mesh.normals.empty()) mesh = with_normals(mesh.vertices, mesh.triangles);
         for (Vec3& v : mesh.vertices) v = transform(part.pose, v);
         for (Vec3& n : mesh.normals) {
@@ -191,7 +201,8 @@ private:
             if (!(length_squared(n) > 0.5f)) n = {0, 1, 0};
         }
         if (mesh.triangles.empty()) return std::nullopt;
-        found->second = Accessors{glb_.add_positions(mesh.vertices), glb_.add_normals(mesh.normals), glb_.add_indices(mesh.triangles)};
+        found->second = Accessors{glb_.add_positions(mesh.vertices), glb_.add_normals(mesh.normals),
+                                  glb_.add_indices(mesh.triangles)};
         return found->second;
     }
 
@@ -205,7 +216,8 @@ private:
         for (const Part& part : parts) {
             const std::optional<Accessors> at = accessors_of(part);
             if (!at) continue;
-            primitives.push_back({{"attributes", {{"POSITION", at->positions}, {"NORMAL", at->normals}}}, {"indices", at->indices},
+            primitives.push_back({{"attributes", {{"POSITION", at->positions}, {"NORMAL", at->normals}}},
+                                  {"indices", at->indices},
                                   {"material", material_of(part)}});
         }
         if (primitives.empty()) return std::nullopt;
@@ -215,14 +227,14 @@ private:
         return found->second;
     }
 
-    void add_channel(std::size_t node, const char* path, std::uint32_t times, std::uint32_t values, const char* interpolation) {
+    void add_channel(std::size_t node, const char* path, std::uint32_t times, std::uint32_t values,
+                     const char* interpolation) {
         samplers_.push_back({{"input", times}, {"output", values}, {"interpolation", interpolation}});
         channels_.push_back({{"sampler", samplers_.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
     }
 
     /// Times of keys as they are stored. Keys that fall together in float are nudged on: times must rise.
-    template <class Key>
-    std::uint32_t add_times(const std::vector<Key>& keys) {
+    template <class Key> std::uint32_t add_times(const std::vector<Key>& keys) {
         std::vector<float> times;
         for (const Key& key : keys) {
             float time = static_cast<float>(time_of(key));
@@ -231,10 +243,7 @@ private:
         }
         return glb_.add_times(times);
     }
-    template <class Value>
-    static double time_of(const MotionKey<Value>& key) {
-        return key.time;
-    }
+    template <class Value> static double time_of(const MotionKey<Value>& key) { return key.time; }
     static double time_of(const std::pair<double, bool>& change) { return change.first; }
 
     void add_motion(std::size_t number, json& node, Motion& motion) {
@@ -242,7 +251,8 @@ private:
         std::vector<Vec3> points;
         for (const auto& key : positions) points.push_back(to_float(key.value));
         node["translation"] = to_json(points[0]);
-        if (points.size() > 1) add_channel(number, "translation", add_times(positions), glb_.add_points(points), "LINEAR");
+        if (points.size() > 1)
+            add_channel(number, "translation", add_times(positions), glb_.add_points(points), "LINEAR");
 
         const auto& rotations = motion.rotations.finish();
         std::vector<Quat> turns;
@@ -255,7 +265,8 @@ private:
             turns.push_back(q);
         }
         if (!is_none(turns[0])) node["rotation"] = to_json(turns[0]);
-        if (turns.size() > 1) add_channel(number, "rotation", add_times(rotations), glb_.add_rotations(turns), "LINEAR");
+        if (turns.size() > 1)
+            add_channel(number, "rotation", add_times(rotations), glb_.add_rotations(turns), "LINEAR");
 
         if (motion.lives.size() == 1 && motion.lives[0].first == 0) return;
         if (motion.lives[0].first > 0) motion.lives.insert(motion.lives.begin(), {0.0, false});
@@ -287,7 +298,8 @@ private:
         document_["scenes"] = {{{"nodes", {0}}}};
         document_["scene"] = 0;
         if (!channels_.empty()) {
-            document_["animations"] = {{{"name", "motion"}, {"channels", std::move(channels_)}, {"samplers", std::move(samplers_)}}};
+            document_["animations"] = {
+                {{"name", "motion"}, {"channels", std::move(channels_)}, {"samplers", std::move(samplers_)}}};
         }
     }
 
@@ -310,7 +322,8 @@ private:
 
 Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options) {
     if (!(options.metres >= 0) || !(options.degrees >= 0) || options.detail < 3 || options.detail > 1000) {
-        return Error{Status::BadArgument, "GlbOptions", "need metres and degrees of 0 or more, detail of 3 to 1000", {}};
+        return Error{
+            Status::BadArgument, "GlbOptions", "need metres and degrees of 0 or more, detail of 3 to 1000", {}};
     }
     return Exporter(player, options).run();
 }

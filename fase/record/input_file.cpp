@@ -25,7 +25,8 @@ Result<InputFile> InputFile::open(const std::string& name) {
     struct stat about {};
     if (::fstat(file.handle_, &about) != 0) return system_error(name, "cannot read", errno);
     if (!S_ISREG(about.st_mode)) {
-        return Error{Status::Io, name, S_ISDIR(about.st_mode) ? "found a folder, need a file" : "found no regular file", {}};
+        return Error{
+            Status::Io, name, S_ISDIR(about.st_mode) ? "found a folder, need a file" : "found no regular file", {}};
     }
     file.size_ = static_cast<std::uint64_t>(about.st_size);
     return file;
@@ -51,7 +52,10 @@ Result<void> InputFile::read(std::uint64_t offset, std::span<std::byte> bytes) c
         if (answer > 0) {
             done += static_cast<std::size_t>(answer);
         } else if (answer == 0) {
-            return Error{Status::Io, path_ + ":" + std::to_string(offset + done), "the file ends here: it was made shorter while it was read", {}};
+            return Error{Status::Io,
+                         path_ + ":" + std::to_string(offset + done),
+                         "the file ends here: it was made shorter while it was read",
+                         {}};
         } else if (errno != EINTR) {
             return system_error(path_ + ":" + std::to_string(offset + done), "cannot read", errno);
         }

@@ -8,22 +8,22 @@
 namespace fase::record {
 
 /// One key of a motion.
-template <class Value>
-struct MotionKey {
+template <class Value> struct MotionKey {
     double time = 0;
     Value value;
 };
 
-/// How far `value` is from what lies between `a` and `b` at `share` (0 … 1) of the way: metres for points on the straight line …
+/// How far `value` is from what lies between `a` and `b` at `share` (0 … 1) of the way: metres for points on the
+/// straight line …
 [[nodiscard]] double distance_between(Vec3d a, Vec3d b, double share, Vec3d value);
 /// … radians for rotations on the shorter great arc, at even speed (glTF's linear interpolation of rotations).
 [[nodiscard]] double distance_between(Quatd a, Quatd b, double share, Quatd value);
 
-/// Takes samples one after the other and keeps a key when the line from the last key to the newest sample would miss one between
-/// by more than `tolerance` (metres or radians). At most `most_waiting` samples are held back, unless nothing moves. Source: the sliding
-/// window of Keogh, Chu, Hart, Pazzani 2001, An online algorithm for segmenting time series.
-template <class Value>
-class MotionKeys {
+/// Takes samples one after the other and keeps a key when the line from the last key to the newest sample would miss
+/// one between by more than `tolerance` (metres or radians). At most `most_waiting` samples are held back, unless
+/// nothing moves. Source: the sliding window of Keogh, Chu, Hart, Pazzani 2001, An online algorithm for segmenting time
+/// series.
+template <class Value> class MotionKeys {
 public:
     static constexpr std::size_t most_waiting = 120;
 
@@ -45,7 +45,8 @@ public:
         }
         waiting_.push_back({time, value});
     }
-    /// The keys; the last sample is the last of them. Nothing can be added afterwards. A motion that rests throughout has one.
+    /// The keys; the last sample is the last of them. Nothing can be added afterwards. A motion that rests throughout
+    /// has one.
     const std::vector<MotionKey<Value>>& finish() {
         if (!waiting_.empty() && !(keys_.size() == 1 && rests())) keys_.push_back(waiting_.back());
         waiting_.clear();

@@ -21,7 +21,8 @@
 namespace fase::record {
 namespace {
 
-/// Holds SIGXFSZ and SIGPIPE off this thread; those that its own writes raise are taken away before they are let in again.
+/// Holds SIGXFSZ and SIGPIPE off this thread; those that its own writes raise are taken away before they are let in
+/// again.
 class WriteSignals {
 public:
     WriteSignals() {
@@ -65,7 +66,8 @@ bool try_lock(int handle) {
     return answer == 0 || (errno != EWOULDBLOCK && errno != EAGAIN);  // a file system without locks does without
 }
 bool is_same_file(int handle, const char* path) {
-    struct stat open_one {}, named_one {};
+    struct stat open_one {
+    }, named_one{};
     return ::fstat(handle, &open_one) == 0 && ::stat(path, &named_one) == 0 && open_one.st_dev == named_one.st_dev &&
            open_one.st_ino == named_one.st_ino;
 }

@@ -9,13 +9,13 @@
 
 namespace fase::record {
 
-/// Writes to `NAME.part` and renames it to `NAME` when done. Survives short writes and interrupts; after an error the file is cut back to
-/// the last whole append. A `NAME` that is a device or a pipe is written directly. Source of the signal handling around
-/// write(): POSIX.1-2008, write(), EFBIG and EPIPE.
+/// Writes to `NAME.part` and renames it to `NAME` when done. Survives short writes and interrupts; after an error the
+/// file is cut back to the last whole append. A `NAME` that is a device or a pipe is written directly. Source of the
+/// signal handling around write(): POSIX.1-2008, write(), EFBIG and EPIPE.
 class OutputFile {
 public:
-    /// Io when it cannot be made there, Busy when another program is writing it. A `NAME.part` that no program holds is moved aside to
-    /// `NAME.lost`, `NAME.lost2` …
+    /// Io when it cannot be made there, Busy when another program is writing it. A `NAME.part` that no program holds is
+    /// moved aside to `NAME.lost`, `NAME.lost2` …
     static Result<OutputFile> create(const std::string& name);
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&& other) noexcept;

@@ -69,8 +69,10 @@ Result<void> Player::State::read_file_head() const {
         return Error{Status::Format, at(8), "found a head whose check sum is wrong", {}};
     }
     if (version != format_version) {
-        return Error{Status::Format, at(8), "found version " + std::to_string(version) + ", this program reads " +
-                     std::to_string(format_version), "use the version of fase that made it"};
+        return Error{
+            Status::Format, at(8),
+            "found version " + std::to_string(version) + ", this program reads " + std::to_string(format_version),
+            "use the version of fase that made it"};
     }
     return {};
 }
@@ -83,7 +85,8 @@ Result<ChunkBody> Player::State::read_chunk(std::uint64_t offset) {
     ByteReader in(head);
     const ChunkType type{in.get<std::uint32_t>()};
     const std::uint64_t length = in.get<std::uint32_t>();
-    if (length > left - chunk_frame_bytes) return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
+    if (length > left - chunk_frame_bytes)
+        return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
     if (length > packed_head_bytes + most_raw_bytes) {
         return Error{Status::Format, at(offset), "found a chunk that is longer than any may be", {}};
     }
@@ -112,7 +115,8 @@ Result<void> Player::State::take_block(const ChunkBody& chunk, std::uint64_t off
 
 Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
     const bool is_head = chunk.type == head_chunk;
-    if (is_head == has_head) return Error{Status::Format, {}, is_head ? "found a second head" : "found no head first", {}};
+    if (is_head == has_head)
+        return Error{Status::Format, {}, is_head ? "found a second head" : "found no head first", {}};
     if (chunk.type == frames_chunk) {
         if (Result<void> taken = take_block(chunk, offset); !taken) return taken.error();
         return false;
@@ -163,7 +167,8 @@ Result<void> Player::State::walk() {
         good_bytes = offset;
     }
     if (!has_head) {
-        if (stopped.problem.empty()) stopped = {Status::Format, at(offset), "found the end of the file before its first chunk", {}};
+        if (stopped.problem.empty())
+            stopped = {Status::Format, at(offset), "found the end of the file before its first chunk", {}};
         stopped.status = Status::Format;
         return stopped;
     }
@@ -194,7 +199,8 @@ Result<void> Player::State::load(const Block& block) {
     if (!raw) return raw.error();
     Result<BlockReader> opened = BlockReader::open(std::move(*raw), tables);
     if (!opened) return opened.error();
-    if ((*chunk).type != frames_chunk || (*opened).first_frame() != block.first_frame || (*opened).frames() != block.frames) {
+    if ((*chunk).type != frames_chunk || (*opened).first_frame() != block.first_frame ||
+        (*opened).frames() != block.frames) {
         return Error{Status::Format, at(block.offset), "found another block than before: the file was changed", {}};
     }
     reader.emplace(std::move(*opened));
@@ -238,8 +244,10 @@ Result<void> Player::read(std::uint64_t number, Frame& frame) try {
     const auto after = std::upper_bound(state.blocks.begin(), state.blocks.end(), number,
                                         [](std::uint64_t n, const Block& block) { return n < block.first_frame; });
     if (after == state.blocks.begin() || number >= frames()) {
-        return Error{Status::OutOfRange, path(), "found frame " + std::to_string(number) + ", need one below " +
-                     std::to_string(frames()), {}};
+        return Error{Status::OutOfRange,
+                     path(),
+                     "found frame " + std::to_string(number) + ", need one below " + std::to_string(frames()),
+                     {}};
     }
     const Block& block = *std::prev(after);
     const auto wanted = static_cast<std::uint32_t>(number - block.first_frame);

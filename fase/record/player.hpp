@@ -10,13 +10,13 @@
 
 namespace fase::record {
 
-/// A recording, read as it is asked for; holds its tables and one block. Any bytes are safe: every length is checked before it is
-/// believed. Not thread-safe.
+/// A recording, read as it is asked for; holds its tables and one block. Any bytes are safe: every length is checked
+/// before it is believed. Not thread-safe.
 class Player {
 public:
-    /// Opens `name`; where there is none, `name.part` of a recording that was never finished. Reads the file once from end to
-    /// end and checks every chunk. Format (with the byte) when not even the head is whole, Io when it cannot be read. Damage
-    /// after the head is no error: see lost().
+    /// Opens `name`; where there is none, `name.part` of a recording that was never finished. Reads the file once from
+    /// end to end and checks every chunk. Format (with the byte) when not even the head is whole, Io when it cannot be
+    /// read. Damage after the head is no error: see lost().
     static Result<Player> open(const std::string& name);
     Player(Player&&) noexcept;
     Player& operator=(Player&&) noexcept;
@@ -37,8 +37,8 @@ public:
     [[nodiscard]] std::uint64_t file_bytes() const;
     [[nodiscard]] std::uint64_t good_bytes() const;
 
-    /// Replaces `frame`. Quick when frames are asked for one after the other, else as slow as a block. OutOfRange: no such frame; Format: what is
-    /// in the block makes no sense, or the file was changed; Io.
+    /// Replaces `frame`. Quick when frames are asked for one after the other, else as slow as a block. OutOfRange: no
+    /// such frame; Format: what is in the block makes no sense, or the file was changed; Io.
     Result<void> read(std::uint64_t number, Frame& frame);
     Result<Frame> frame(std::uint64_t number);
 

@@ -9,7 +9,8 @@
 
 namespace fase::record {
 
-/// A rotation in 44 bits: which component is largest, and codes (0 … 16382, 8191 steps either side of 8192) of the others in the order x y z w.
+/// A rotation in 44 bits: which component is largest, and codes (0 … 16382, 8191 steps either side of 8192) of the
+/// others in the order x y z w.
 struct RotationCode {
     std::array<std::uint16_t, 3> small{8192, 8192, 8192};
     std::uint8_t largest = 3;

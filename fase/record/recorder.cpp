@@ -14,8 +14,7 @@ namespace {
 constexpr std::uint32_t no_row = 0xffffffff;
 
 /// Rows of ids: by slot, the generation that the row is of.
-template <class Id>
-class RowMap {
+template <class Id> class RowMap {
 public:
     [[nodiscard]] std::uint32_t find(Id id) const {
         return id.index < slots_.size() && slots_[id.index].generation == id.generation ? slots_[id.index].row : no_row;
@@ -73,8 +72,7 @@ struct Recorder::State {
     Result<void> read_contacts(const World& world);
     /// The row of a collider, declared now when it is new; no_row when it is gone and was never seen.
     Result<std::uint32_t> row_of(const World& world, ColliderId id);
-    template <class Pair>
-    Result<bool> set_pair(const World& world, ColliderId a, ColliderId b, Pair& pair);
+    template <class Pair> Result<bool> set_pair(const World& world, ColliderId a, ColliderId b, Pair& pair);
     template <class Event>
     Result<void> read_pairs(const World& world, const std::vector<Event>& events, std::vector<ColliderPair>& pairs,
                             ColliderId Event::*a, ColliderId Event::*b);
@@ -84,7 +82,7 @@ struct Recorder::State {
     std::unordered_map<std::uint64_t, BodyLook> looks;
     RowMap<BodyId> body_rows;
     RowMap<ColliderId> collider_rows;
-    std::vector<std::vector<ColliderId>> colliders;  ///< by body row, as last seen
+    std::vector<std::vector<ColliderId>> colliders;             ///< by body row, as last seen
     std::unordered_map<std::string, std::uint32_t> shape_rows;  ///< by their bytes
     std::vector<BodyState> bodies;
     std::vector<ContactState> contact_states;
@@ -167,8 +165,8 @@ Result<void> Recorder::State::add_bodies(const World& world) {
             row = *added;
         }
         rising = rising && (frame.bodies.empty() || frame.bodies.back().row < row);
-        frame.bodies.push_back({row, static_cast<std::uint8_t>(body.kind), body.awake, body.quarantined, body.island + 1,
-                                body.pose});
+        frame.bodies.push_back(
+            {row, static_cast<std::uint8_t>(body.kind), body.awake, body.quarantined, body.island + 1, body.pose});
     }
     if (!rising) {
         std::sort(frame.bodies.begin(), frame.bodies.end(),
@@ -304,8 +302,11 @@ Result<Recorder> Recorder::create(const std::string& name, const World& world, c
     for (const BodyLook& look : head.looks) {
         for (const Visual& visual : look.visuals) {
             if (visual.mesh >= head.meshes.size()) {
-                return Error{Status::BadArgument, "RecordingHead.looks", "a visual names mesh " + std::to_string(visual.mesh) +
-                             " of " + std::to_string(head.meshes.size()), {}};
+                return Error{
+                    Status::BadArgument,
+                    "RecordingHead.looks",
+                    "a visual names mesh " + std::to_string(visual.mesh) + " of " + std::to_string(head.meshes.size()),
+                    {}};
             }
         }
     }

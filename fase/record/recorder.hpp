@@ -30,14 +30,14 @@ struct RecordingHead {
     std::vector<BodyLook> looks;  ///< in any order; may name bodies that are made later
 };
 
-/// Reads a world through its public functions and writes `NAME.part`, which finish() renames to `NAME`. Killed at any moment, it
-/// leaves a file that opens up to its last flushed block. Bodies may come and go between frames; colliders that were put on or taken
-/// off a living body show from the next block on. One thread at a time.
+/// Reads a world through its public functions and writes `NAME.part`, which finish() renames to `NAME`. Killed at any
+/// moment, it leaves a file that opens up to its last flushed block. Bodies may come and go between frames; colliders
+/// that were put on or taken off a living body show from the next block on. One thread at a time.
 class Recorder {
 public:
     /// Writes head and tables of the world as it is; frame 0 is what the first add_frame() finds.
-    /// Io: cannot write there; Busy: another program records to that name; BadArgument: options out of range, a visual of a
-    /// mesh that is not there.
+    /// Io: cannot write there; Busy: another program records to that name; BadArgument: options out of range, a visual
+    /// of a mesh that is not there.
     static Result<Recorder> create(const std::string& name, const World& world, const RecordingHead& head = {},
                                    const RecorderOptions& options = {});
     Recorder(Recorder&&) noexcept;
@@ -45,8 +45,8 @@ public:
     /// Finishes, if that was not done; errors are lost then.
     ~Recorder();
 
-    /// The world as it is now, with the report and events of its last step. It must be the world of create(). Errors: Io, with frames
-    /// and bytes written so far (they open); Capacity, when more than 2^21 bodies ever lived.
+    /// The world as it is now, with the report and events of its last step. It must be the world of create(). Errors:
+    /// Io, with frames and bytes written so far (they open); Capacity, when more than 2^21 bodies ever lived.
     Result<void> add_frame(const World& world);
     /// Writes what is held back.
     Result<void> flush();

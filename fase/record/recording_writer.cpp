@@ -50,8 +50,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Head he
 RecordingWriter::RecordingWriter(OutputFile file, const Head& head, const RecorderOptions& options)
     : file_(std::move(file)), options_(options), packer_(options.level), block_(head) {}
 
-template <class Row>
-Result<std::uint32_t> RecordingWriter::add_row(std::size_t table, const Row& row) {
+template <class Row> Result<std::uint32_t> RecordingWriter::add_row(std::size_t table, const Row& row) {
     Table& rows = tables_[table];
     if (rows.rows >= most_rows) {
         return Error{Status::Capacity, "recording", "a table holds 2097152 rows, the most there may be", {}};
@@ -83,7 +82,8 @@ Result<std::uint32_t> RecordingWriter::add(const RecordedVisual& visual) {
 }
 
 Result<void> RecordingWriter::end_collider(std::uint32_t row) {
-    if (row >= tables_[3].rows) return Error{Status::BadArgument, "end_collider", "names a collider that was not added", {}};
+    if (row >= tables_[3].rows)
+        return Error{Status::BadArgument, "end_collider", "names a collider that was not added", {}};
     const Result<std::uint32_t> added = add_row(5, ColliderEnd{row, frames()});
     if (!added) return added.error();
     return {};
@@ -91,7 +91,8 @@ Result<void> RecordingWriter::end_collider(std::uint32_t row) {
 
 Error RecordingWriter::failed(const Error& error) {
     Error told = error;
-    told.problem += "; wrote " + std::to_string(frames_flushed_) + " frames, " + std::to_string(file_.bytes()) + " bytes";
+    told.problem +=
+        "; wrote " + std::to_string(frames_flushed_) + " frames, " + std::to_string(file_.bytes()) + " bytes";
     state_ = told;
     return told;
 }

@@ -56,8 +56,7 @@ std::vector<Triangle> get_triangles(ByteReader& in, std::size_t count, std::size
 }
 LocalPose get_checked_pose(ByteReader& in) {
     const LocalPose pose = in.get_pose();
-    if (!is_finite(pose.position) || !is_finite(pose.rotation) ||
-        std::abs(length_squared(pose.rotation) - 1) > 0.01f) {
+    if (!is_finite(pose.position) || !is_finite(pose.rotation) || std::abs(length_squared(pose.rotation) - 1) > 0.01f) {
         in.refuse();
     }
     return pose;
@@ -143,14 +142,16 @@ RecordedVisual read_visual(ByteReader& in, const Tables& tables) {
 }
 
 template <class Row>
-Result<void> read_table(ByteReader& in, const char* name, std::vector<Row>& rows, Row (*read)(ByteReader&, const Tables&),
-                        const Tables& tables) {
+Result<void> read_table(ByteReader& in, const char* name, std::vector<Row>& rows,
+                        Row (*read)(ByteReader&, const Tables&), const Tables& tables) {
     const std::size_t count = in.get_u32_count(1);
     for (std::size_t i = 0; i < count; ++i) {
         Row row = read(in, tables);
         if (in.failed() || rows.size() >= most_rows) {
-            return Error{Status::Format, std::string(name) + " row " + std::to_string(rows.size()),
-                         "found a row that is cut off or names what is not there, need a whole one", {}};
+            return Error{Status::Format,
+                         std::string(name) + " row " + std::to_string(rows.size()),
+                         "found a row that is cut off or names what is not there, need a whole one",
+                         {}};
         }
         rows.push_back(std::move(row));
     }
@@ -178,9 +179,7 @@ Result<void> read_ends(ByteReader& in, Tables& tables) {
 /// From a shape of the library to how it is told.
 struct Recorded {
     RecordedShape operator()(const Sphere& s) const { return {ShapeKind::Sphere, {s.radius, 0, 0}, {}, {}}; }
-    RecordedShape operator()(const Box& s) const {
-        return {ShapeKind::Box, {s.half.x, s.half.y, s.half.z}, {}, {}};
-    }
+    RecordedShape operator()(const Box& s) const { return {ShapeKind::Box, {s.half.x, s.half.y, s.half.z}, {}, {}}; }
     RecordedShape operator()(const Capsule& s) const {
         return {ShapeKind::Capsule, {s.radius, s.half_length, 0}, {}, {}};
     }
@@ -199,8 +198,7 @@ struct Recorded {
         return shape;
     }
     /// A shape that this format has no numbers for.
-    template <class S>
-    RecordedShape operator()(const S& other) const {
+    template <class S> RecordedShape operator()(const S& other) const {
         const TriangleMesh mesh = fase::triangles(Shape(other));
         RecordedShape shape{ShapeKind::Triangles, {}, mesh.positions, {}};
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

@@ -26,7 +26,7 @@ struct Head {
     std::string program;  ///< what wrote it
     float time_step = 1.0f / 60;
     Vec3 gravity;
-    double quanta_per_metre = 2048;
+    double quanta_per_metre = default_quanta_per_metre;
     bool contacts = false;  ///< frames list contact points
     std::vector<std::string> stage_names, counter_names;
     friend bool operator==(const Head&, const Head&) = default;
@@ -73,8 +73,9 @@ struct RecordedCollider {
     std::uint32_t body = 0;   ///< row
     std::uint32_t shape = 0;  ///< row
     std::uint64_t first_frame = 0;
-    std::uint64_t end_frame = std::numeric_limits<std::uint64_t>::max();  ///< the first without it; told apart from the row
-    LocalPose pose;  ///< of the shape in the body
+    std::uint64_t end_frame =
+        std::numeric_limits<std::uint64_t>::max();  ///< the first without it; told apart from the row
+    LocalPose pose;                                 ///< of the shape in the body
     friend bool operator==(const RecordedCollider&, const RecordedCollider&) = default;
 };
 /// A mesh on a body.

@@ -28,6 +28,8 @@ class JsonValue;
 class JsonDocument {
 public:
     [[nodiscard]] JsonValue root() const;
+    /// The value whose index() this is.
+    [[nodiscard]] JsonValue at(std::uint32_t index) const;
 
 private:
     friend class JsonValue;
@@ -57,6 +59,8 @@ public:
     [[nodiscard]] std::size_t size() const;
     /// The member of that name; nullopt when there is none or this is no object. O(members).
     [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;
+    /// Its number among the document's values: see JsonDocument::at().
+    [[nodiscard]] std::uint32_t index() const { return index_; }
     /// Where it ended in the text, in bytes from its start.
     [[nodiscard]] std::size_t offset() const { return node().offset; }
     /// "/nodes/3/mesh": the way from the root (RFC 6901). O(document): for messages.
@@ -85,6 +89,7 @@ private:
 };
 
 inline JsonValue JsonDocument::root() const { return {this, 0}; }
+inline JsonValue JsonDocument::at(std::uint32_t index) const { return {this, index}; }
 
 /// Reads a text. Format, with "byte N" as `where`, for anything that RFC 8259 does not allow, a byte order mark, a
 /// number that does not fit a double, nesting deeper than the options say, a key given twice, or 4 GiB and more.

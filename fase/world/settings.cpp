@@ -31,6 +31,7 @@ Result<void> check(const Settings& s) {
         {"box_margin", s.box_margin, 0.0f, 1e3f},
         {"sleep_linear_speed", s.sleep_linear_speed, 0.0f, 1e6f},
         {"sleep_angular_speed", s.sleep_angular_speed, 0.0f, 1e6f},
+        {"sleep_distance", s.sleep_distance, 0.0f, 1e3f},
         {"time_to_sleep", s.time_to_sleep, 0.0f, 1e6f},
         {"most_linear_speed", s.most_linear_speed, 1e-3f, 1e6f},
         {"most_angular_speed", s.most_angular_speed, 1e-3f, 1e5f},

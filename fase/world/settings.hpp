@@ -22,7 +22,7 @@ struct Settings {
     float push_out_speed = 3;            ///< m/s at most, at which overlap is undone (length)
     float restitution_threshold = 0.1f;  ///< m/s of approach below which nothing bounces (length)
     float speculative_distance = 0.02f;  ///< contacts are made this far before touch (length)
-    float linear_slop = 0.005f;          ///< what counts as touching and as staying in place (length)
+    float linear_slop = 0.005f;          ///< what counts as touching (length)
     float contact_reuse_distance = 0.01f;///< a manifold of several points is kept while its bodies moved less against each other (length);
                                          ///< 0: made anew each step
 
@@ -31,14 +31,15 @@ struct Settings {
 
     // Sleep.
     bool sleep = true;                   ///< islands at rest fall asleep
-    float sleep_linear_speed = 0.05f;    ///< m/s, a body slower than this …
-    float sleep_angular_speed = 0.05f;   ///< … and this (rad/s) …
-    float time_to_sleep = 0.5f;          ///< … for so many seconds, and within linear_slop of one place, may sleep when its whole island may
+    float sleep_linear_speed = 0.15f;    ///< m/s, a body slower than this …
+    float sleep_angular_speed = 0.3f;    ///< … and this (rad/s) …
+    float sleep_distance = 0.01f;        ///< m; net motion: a tremble about one place is rest, a slow slide is not (length)
+    float time_to_sleep = 0.5f;          ///< … for so many seconds, and all its points within sleep_distance of one place, may sleep when its island may
 
     // Caps: clamped and counted in the report, never exceeded.
     float most_linear_speed = 1000;   ///< m/s
     float most_angular_speed = 1000;  ///< rad/s
-    int most_pairs = 0;               ///< pairs kept a step; 0: no limit. Beyond: the last in order are dropped and counted
+    int most_pairs = 1 << 22;         ///< pairs kept; beyond, the last in order are dropped and counted. 0: no limit
 };
 
 /// An error that names the field unless every number is finite and in the range its comment gives.

@@ -144,7 +144,7 @@ template <class A>
 void describe(A& a, Settings& s) {
     all(a, s.gravity, s.time_step, s.sub_steps, s.contact_frequency, s.contact_damping_ratio, s.push_out_speed,
         s.restitution_threshold, s.speculative_distance, s.linear_slop, s.contact_reuse_distance, s.box_margin, s.sleep,
-        s.sleep_linear_speed, s.sleep_angular_speed, s.time_to_sleep, s.most_linear_speed, s.most_angular_speed,
+        s.sleep_linear_speed, s.sleep_angular_speed, s.sleep_distance, s.time_to_sleep, s.most_linear_speed, s.most_angular_speed,
         s.most_pairs);
 }
 template <class A>
@@ -155,7 +155,7 @@ void describe(A& a, dynamics::BodyTraits& t) {
 }
 template <class A>
 void describe(A& a, dynamics::BodyMotion& m) {
-    all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.drift, m.island);
+    all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.drift, m.turn, m.island);
 }
 template <class A>
 void describe(A& a, dynamics::BodyForces& f) {

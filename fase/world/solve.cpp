@@ -91,7 +91,7 @@ void solve(WorldState& state, float seconds) {
 
 void finish(WorldState& state, float seconds) {
     const float linear = state.settings.sleep_linear_speed, angular = state.settings.sleep_angular_speed;
-    const float slop = state.settings.linear_slop;
+    const float distance = state.settings.sleep_distance;
     state.reused.assign(state.awake.size(), 0);  // marks bodies that went bad
     parallel_ranges(*state.tasks, state.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -110,13 +110,15 @@ void finish(WorldState& state, float seconds) {
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
-            const bool stays = length_squared(next.drift) < slop * slop;  // slow but steady is no rest
+            next.turn += next.angular_velocity * seconds;
+            // Slow but steady is no rest; a tremble about one place is.
+            const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
                               length_squared(next.angular_velocity) < angular * angular;
             const bool still = length_squared(next.linear_velocity) == 0 && length_squared(next.angular_velocity) == 0;
             const bool rests = traits.kind == BodyKind::Dynamic ? slow && stays && traits.can_sleep : still;
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
-            if (!rests) next.drift = {};
+            if (!rests) next.drift = next.turn = {};
             state.bodies.motion[body] = next;
         }
     });

@@ -88,23 +88,39 @@ void gather_askers(WorldState& state) {
                        state.askers.end());
 }
 
-/// Candidates of the askers in all three sets, sorted, each once. With a limit, asks in portions and stops when it is reached:
+void ask(WorldState& state, std::span<const broad::Move> askers) {
+    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes})
+        if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, askers, state.changes, state.candidates);
+}
+
+/// Whether all askers together may well find more pairs than are wanted, judged by a sample of them.
+bool looks_crowded(WorldState& state, std::size_t limit) {
+    constexpr std::size_t sample = 64;
+    if (state.askers.size() <= sample) return false;
+    const std::size_t stride = state.askers.size() / sample;
+    for (std::size_t i = 0; i < sample; ++i) {
+        ask(state, std::span<const broad::Move>(state.askers).subspan(i * stride, 1));
+        if (state.candidates.size() > limit) break;
+    }
+    const bool crowded = state.candidates.size() * stride > limit / 4;
+    state.candidates.clear();
+    return crowded;
+}
+
+/// Candidates of the askers in all three sets, sorted, each once. A crowd asks in portions and stops when the limit is reached:
 /// those with the largest numbers go without.
 void find_candidates(WorldState& state) {
     state.candidates.clear();
     const auto limit = static_cast<std::size_t>(state.settings.most_pairs);
-    const std::size_t portion = limit == 0 ? state.askers.size() : 64;
     state.ask_all = false;
+    const std::size_t portion = limit != 0 && looks_crowded(state, limit) ? 64 : state.askers.size();
     for (std::size_t begin = 0; begin < state.askers.size(); begin += portion) {
         if (limit != 0 && state.candidates.size() > limit) {
             state.ask_all = true;
             state.report.pairs_dropped += static_cast<std::uint32_t>(state.askers.size() - begin);
             break;
         }
-        const auto askers = std::span<const broad::Move>(state.askers).subspan(
-            begin, std::min(portion, state.askers.size() - begin));
-        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes})
-            if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, askers, state.changes, state.candidates);
+        ask(state, std::span<const broad::Move>(state.askers).subspan(begin, std::min(portion, state.askers.size() - begin)));
     }
     state.report.candidates = state.candidates.size();
     std::erase_if(state.candidates, [&](Pair pair) { return !wanted(state, pair); });

@@ -27,7 +27,7 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
     if (setup.threads < 0 || setup.threads > 1024)
         return Error{Status::BadArgument, "Setup.threads", "found " + std::to_string(setup.threads) + ", need 0 to 1024",
                      "0 takes all cores"};
-    auto structure = broad::AnyStructure::named(setup.structure == "auto" ? "dynamic_bvh" : setup.structure);
+    auto structure = broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
     if (!structure) {
         Error error = structure.error();
         error.where = "Setup.structure";

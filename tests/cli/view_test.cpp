@@ -78,7 +78,7 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     int run() {
-        read_until("\0never");
+        read_until("\x01");
         return wait();
     }
     [[nodiscard]] const std::string& text() const { return text_; }
@@ -99,7 +99,9 @@ public:
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
     }
-    Connection(Connection&& other) noexcept : socket_(other.socket_), connected_(other.connected_) { other.socket_ = -1; }
+    Connection(Connection&& other) noexcept : socket_(other.socket_), connected_(other.connected_) {
+        other.socket_ = -1;
+    }
     ~Connection() {
         if (socket_ >= 0) ::close(socket_);
     }
@@ -151,7 +153,8 @@ protected:
         return connection.read_all();
     }
     [[nodiscard]] std::string host() const { return "Host: localhost:" + std::to_string(port_) + "\r\n"; }
-    [[nodiscard]] std::string answer(const std::string& method, const std::string& target, const std::string& headers = "") const {
+    [[nodiscard]] std::string answer(const std::string& method, const std::string& target,
+                                     const std::string& headers = "") const {
         return answer_to(method + " " + target + " HTTP/1.1\r\n" + host() + headers + "Connection: close\r\n\r\n");
     }
     static int code_of(const std::string& answer) {
@@ -190,8 +193,8 @@ TEST_F(ViewServer, GivesThePageAndTheRecording) {
 }
 
 TEST_F(ViewServer, SendsItsSafetyHeadersWithEveryAnswer) {
-    for (const std::string& text : {answer("GET", "/"), answer("GET", "/recording"), answer("GET", "/nothing"), answer("POST", "/"),
-                                    answer("GET", "/..")}) {
+    for (const std::string& text : {answer("GET", "/"), answer("GET", "/recording"), answer("GET", "/nothing"),
+                                    answer("POST", "/"), answer("GET", "/..")}) {
         EXPECT_NE(text.find("X-Content-Type-Options: nosniff"), text.npos) << text.substr(0, 400);
         EXPECT_NE(text.find("Content-Security-Policy: default-src 'self'"), text.npos);
         EXPECT_EQ(text.find("Access-Control-Allow"), text.npos);
@@ -217,22 +220,24 @@ TEST_F(ViewServer, RefusesOtherHostsAndOrigins) {
         EXPECT_EQ(with_host(good), 200) << good;
         EXPECT_EQ(with_host(good + port), 200) << good;
     }
-    for (const std::string bad : {"evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "", "127.0.0.2", "localhost:x",
-                                  "localhost:", "localhost@evil.example", "[::1", "0.0.0.0"}) {
+    for (const std::string bad : {"evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "", "127.0.0.2",
+                                  "localhost:x", "localhost:", "localhost@evil.example", "[::1", "0.0.0.0"}) {
         EXPECT_EQ(with_host(bad), 403) << bad;
     }
     EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\nConnection: close\r\n\r\n")), 400);
     EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n")), 400);
     EXPECT_EQ(code_of(answer("GET", "/", "Origin: http://localhost" + port + "\r\n")), 200);
     EXPECT_EQ(code_of(answer("GET", "/", "Origin: http://127.0.0.1" + port + "\r\n")), 200);
-    for (const std::string& bad : {std::string("http://evil.example"), std::string("null"), std::string("http://localhost:1"),
-                                   "https://localhost" + port, std::string("http://localhost"), std::string("file://")}) {
+    for (const std::string& bad :
+         {std::string("http://evil.example"), std::string("null"), std::string("http://localhost:1"),
+          "https://localhost" + port, std::string("http://localhost"), std::string("file://")}) {
         EXPECT_EQ(code_of(answer("GET", "/recording", "Origin: " + bad + "\r\n")), 403) << bad;
     }
 }
 
 TEST_F(ViewServer, AnswersOnlyGetAndHead) {
-    for (const std::string method : {"POST", "PUT", "DELETE", "TRACE", "CONNECT", "OPTIONS", "PATCH", "PRI", "get", "X"}) {
+    for (const std::string method :
+         {"POST", "PUT", "DELETE", "TRACE", "CONNECT", "OPTIONS", "PATCH", "PRI", "get", "X"}) {
         const std::string text = answer(method, "/");
         EXPECT_EQ(code_of(text), 405) << method;
         EXPECT_NE(text.find("Allow: GET, HEAD"), text.npos);
@@ -240,13 +245,15 @@ TEST_F(ViewServer, AnswersOnlyGetAndHead) {
     EXPECT_EQ(code_of(answer_to("POST / HTTP/1.1\r\n" + host() + "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n")), 405);
     EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\n" + host() + "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n")), 400);
     EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\n" + host() + "Content-Length: 5\r\n\r\nhello")), 400);
-    EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\n" + host() + "Content-Length: 0\r\nTransfer-Encoding: x\r\n\r\n")), 400);
+    EXPECT_EQ(code_of(answer_to("GET / HTTP/1.1\r\n" + host() + "Content-Length: 0\r\nTransfer-Encoding: x\r\n\r\n")),
+              400);
 }
 
 TEST_F(ViewServer, GivesNoFileOfTheDisk) {
     for (const std::string target :
-         {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2fetc/passwd", "//etc/passwd", "/etc/passwd", "/\\..\\etc", "/%00",
-          "/recording%00.html", "http://evil.example/", "http://localhost/", "*", "recording", "/viewer.js/..", "/recording/", "/.//", "/%"}) {
+         {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2fetc/passwd", "//etc/passwd", "/etc/passwd",
+          "/\\..\\etc", "/%00", "/recording%00.html", "http://evil.example/", "http://localhost/", "*", "recording",
+          "/viewer.js/..", "/recording/", "/.//", "/%"}) {
         const std::string text = answer("GET", target);
         EXPECT_TRUE(code_of(text) == 400 || code_of(text) == 404) << target << " " << code_of(text);
         EXPECT_EQ(text.find("root:"), text.npos) << target;
@@ -263,12 +270,13 @@ TEST_F(ViewServer, RefusesMalformedHeads) {
     many.clear();
     for (int i = 0; i < 99; ++i) many += "X: 1\r\n";
     EXPECT_EQ(code_of(answer("GET", "/", many)), 431);
-    for (const std::string& head : {std::string("GET /\r\n\r\n"), std::string("GET / HTTP/2.0\r\n\r\n"), std::string("\r\n\r\n"),
-                                    "GET / HTTP/1.1\r\n" + host() + "no colon\r\n\r\n", "GET / HTTP/1.1\r\n" + host() + " folded: x\r\n\r\n",
-                                    "GET / HTTP/1.1\r\n" + host() + "bad name: x\r\n\r\n", "GET / HTTP/1.1\r\n" + host() + ": x\r\n\r\n",
-                                    "GET /a b HTTP/1.1\r\n" + host() + "\r\n", "GET / HTTP/1.1\n" + host() + "\r\n",
-                                    "GET / HTTP/1.1\r\n" + host() + std::string("X: a\0b\r\n\r\n", 10),
-                                    "GET / HTTP/1.1\r\n" + host() + "X: a\rb\r\n\r\n"}) {
+    for (const std::string& head :
+         {std::string("GET /\r\n\r\n"), std::string("GET / HTTP/2.0\r\n\r\n"), std::string("\r\n\r\n"),
+          "GET / HTTP/1.1\r\n" + host() + "no colon\r\n\r\n", "GET / HTTP/1.1\r\n" + host() + " folded: x\r\n\r\n",
+          "GET / HTTP/1.1\r\n" + host() + "bad name: x\r\n\r\n", "GET / HTTP/1.1\r\n" + host() + ": x\r\n\r\n",
+          "GET /a b HTTP/1.1\r\n" + host() + "\r\n", "GET / HTTP/1.1\n" + host() + "\r\n",
+          "GET / HTTP/1.1\r\n" + host() + std::string("X: a\0b\r\n\r\n", 10),
+          "GET / HTTP/1.1\r\n" + host() + "X: a\rb\r\n\r\n"}) {
         EXPECT_EQ(code_of(answer_to(head)), 400) << head;
     }
 }
@@ -359,8 +367,12 @@ TEST(View, WritesOnePageThatRefersToNothingElse) {
     const std::string page = read_file(folder / "page.html");
     EXPECT_GT(page.size(), read_file(folder / "run.faserec").size() * 4 / 3);
     EXPECT_EQ(page.find("src=\""), page.npos);
-    EXPECT_EQ(page.find("<link"), page.npos);
-    EXPECT_NE(page.find("<script id=\"recording\" type=\"application/octet-stream;base64\">RkFTRVJFQ"), page.npos);  // FASEREC
+    EXPECT_EQ(page.find("rel=\"stylesheet\""), page.npos);
+    for (std::size_t at = 0; (at = page.find(" href=\"", at)) < page.find("<script"); ++at) {
+        EXPECT_EQ(page.substr(at + 7, 5), "data:");
+    }
+    EXPECT_NE(page.find("<script id=\"recording\" type=\"application/octet-stream;base64\">RkFTRVJFQ"),
+              page.npos);  // FASEREC
     std::size_t scripts = 0;
     for (std::size_t at = 0; (at = page.find("</script", at)) != page.npos; ++at) ++scripts;
     EXPECT_EQ(scripts, 2u);

@@ -97,6 +97,26 @@ TEST(Bounds, hold_the_exact_box_of_every_bounded_shape_and_are_tight) {
     });
 }
 
+/// Where the position takes the reach away, the rounding to float hides nothing of what came before it.
+TEST(Bounds, hold_the_exact_box_also_when_a_side_of_it_lies_at_zero) {
+    Random random(6);
+    for_each_shape([&]<class S>() {
+        if constexpr (ConvexShape<S>) {
+            for (int round = 0; round < 5000; ++round) {
+                const S shape = test::random_shape<S>(random);
+                Pose pose{{}, test::random_rotation(random)};
+                const ExactBox centred = exact_box(shape, pose);
+                const Vec3e& side = round % 2 == 0 ? centred.lo : centred.hi;
+                pose.position = {-double(side.x), -double(side.y), -double(side.z)};
+                const ExactBox truth = exact_box(shape, pose);
+                const Aabb box = bounds(shape, pose);
+                ASSERT_TRUE(holds(box, truth.lo)) << S::name;
+                ASSERT_TRUE(holds(box, truth.hi)) << S::name;
+            }
+        }
+    });
+}
+
 TEST(Bounds, hold_random_points_of_the_surface_and_the_inside) {
     Random random(2);
     for (int round = 0; round < 300; ++round) {

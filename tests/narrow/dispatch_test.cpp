@@ -87,6 +87,23 @@ TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactTurnedRound) {
     }
 }
 
+TEST(Dispatch, BoxesAndHullsRestOnFourPointsWhateverTheirSmallTilt) {
+    Random random(5);
+    const std::vector<Shape> cubes{Box{{0.5f, 0.5f, 0.5f}}, box_hull({0.5f, 0.5f, 0.5f})};
+    for (const Shape& a : cubes) {
+        for (const Shape& b : cubes) {
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 tilt = random_in_cube(random) * 1e-3f;
+                const Quat turn = rotation_about(Vec3{0, 1, 0}, random.between(0.1f, 0.7f));
+                const LocalPose x{Vec3{0, random.between(0.985f, 1.005f), 0} + random_in_cube(random) * 0.003f,
+                                  normalized(turn * Quat{tilt.x, tilt.y, tilt.z, 1})};
+                ASSERT_EQ(collide(a, b, x, 0.02f).count, 4) << name_of(a) << " " << name_of(b) << " " << i;
+                ASSERT_EQ(narrow::collide_general(a, b, x, 0.02f).count, 4) << name_of(a) << " " << name_of(b) << i;
+            }
+        }
+    }
+}
+
 /// Special pairs are judged by the general path: where both see a contact, normals and least separations agree.
 TEST(Dispatch, SpecialPairsAgreeWithTheGeneralPath) {
     Random random(4);

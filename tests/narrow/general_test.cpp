@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "fase/narrow/dispatch.hpp"
 #include "fase/narrow/distance.hpp"

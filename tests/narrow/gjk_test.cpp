@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "fase/narrow/clip.hpp"
 #include "fase/narrow/epa.hpp"
 #include "fase/narrow/sat.hpp"

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "fase/narrow/distance.hpp"
 #include "fase/scene/files.hpp"

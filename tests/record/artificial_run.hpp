@@ -68,8 +68,10 @@ public:
     /// Adds all rows that the frames name.
     Result<void> add_tables(RecordingWriter& writer) const {
         const RecordedShape box{ShapeKind::Box, {0.5f, 0.5f, 0.5f}, {}, {}};
-        const RecordedShape tetrahedron{
-            ShapeKind::Hull, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+        const RecordedShape tetrahedron{ShapeKind::Hull,
+                                        {},
+                                        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                        {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
         const RecordedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 1, 2}}};
         if (auto row = writer.add(box); !row) return row.error();
         if (auto row = writer.add(tetrahedron); !row) return row.error();
@@ -83,8 +85,13 @@ public:
         return {};
     }
     [[nodiscard]] RecordedBody body(std::uint32_t i) const {
-        return {i, static_cast<std::uint16_t>(1 + i % 3), static_cast<std::uint8_t>(i == 0 ? 0 : 2), 1000ull + i,
-                i == 0 ? 0.0f : 2.5f, {10, 20, 30, 255}, i == 0 ? "ground" : ""};
+        return {i,
+                static_cast<std::uint16_t>(1 + i % 3),
+                static_cast<std::uint8_t>(i == 0 ? 0 : 2),
+                1000ull + i,
+                i == 0 ? 0.0f : 2.5f,
+                {10, 20, 30, 255},
+                i == 0 ? "ground" : ""};
     }
     [[nodiscard]] RecordedCollider collider(std::uint32_t i) const {
         RecordedCollider collider;
@@ -142,7 +149,8 @@ private:
         for (std::uint64_t j = 0; j < k % 4; ++j) {
             frame.contacts_begun.push_back({any(j, 1), any(j, 2)});
             frame.contacts_ended.push_back({any(j, 3), any(j, 4)});
-            frame.hits.push_back({any(j, 5), any(j, 6), {origin_ + noise(k, j, 7), 2, -origin_}, {0, 1, 0}, 3.5f, 0.125f});
+            frame.hits.push_back(
+                {any(j, 5), any(j, 6), {origin_ + noise(k, j, 7), 2, -origin_}, {0, 1, 0}, 3.5f, 0.125f});
         }
         if (k % 8 == 1) frame.sensors_begun.push_back({3, any(0, 8)});
         if (k % 8 == 5) frame.sensors_ended.push_back({3, any(0, 9)});

@@ -42,7 +42,8 @@ struct Container {
         const std::uint32_t text = u32_at(glb, 12);
         EXPECT_EQ(text % 4, 0u);
         EXPECT_EQ(u32_at(glb, 16), 0x4e4f534au);
-        document = json::parse(reinterpret_cast<const char*>(glb.data()) + 20, reinterpret_cast<const char*>(glb.data()) + 20 + text);
+        document = json::parse(reinterpret_cast<const char*>(glb.data()) + 20,
+                               reinterpret_cast<const char*>(glb.data()) + 20 + text);
         const std::size_t rest = 20 + text;
         if (rest == glb.size()) return;
         EXPECT_EQ(u32_at(glb, rest) % 4, 0u);
@@ -56,7 +57,9 @@ struct Container {
         const std::string type = a["type"];
         const std::size_t parts = type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 4;
         std::vector<float> out(a["count"].get<std::size_t>() * parts);
-        std::memcpy(out.data(), binary.data() + view["byteOffset"].get<std::size_t>() + a["byteOffset"].get<std::size_t>(), out.size() * 4);
+        std::memcpy(out.data(),
+                    binary.data() + view["byteOffset"].get<std::size_t>() + a["byteOffset"].get<std::size_t>(),
+                    out.size() * 4);
         return out;
     }
 };
@@ -80,12 +83,14 @@ TEST(GlbExport, IsAValidFile) {
         const std::size_t size = 4 * (type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 4);
         EXPECT_EQ(a["byteOffset"].get<std::size_t>() % 4, 0u);
         EXPECT_GT(a["count"].get<std::size_t>(), 0u);
-        EXPECT_LE(a["byteOffset"].get<std::size_t>() + a["count"].get<std::size_t>() * size, view["byteLength"].get<std::size_t>());
+        EXPECT_LE(a["byteOffset"].get<std::size_t>() + a["count"].get<std::size_t>() * size,
+                  view["byteLength"].get<std::size_t>());
     }
     const json& meshes = glb.document["meshes"];
     for (const json& mesh : meshes) {
         for (const json& primitive : mesh["primitives"]) {
-            const std::size_t position = primitive["attributes"]["POSITION"], normal = primitive["attributes"]["NORMAL"];
+            const std::size_t position = primitive["attributes"]["POSITION"],
+                              normal = primitive["attributes"]["NORMAL"];
             const json& a = glb.document["accessors"][position];
             EXPECT_EQ(a["count"], glb.document["accessors"][normal]["count"]);
             const std::vector<float> points = glb.floats(position), normals = glb.floats(normal);
@@ -133,7 +138,8 @@ TEST(GlbExport, IsReadByAnotherProgram) {
     tinygltf::TinyGLTF reader;
     tinygltf::Model model;
     std::string error, warning;
-    ASSERT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()),
+    ASSERT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning,
+                                            reinterpret_cast<const unsigned char*>(glb.data()),
                                             static_cast<unsigned>(glb.size())))
         << error;
     EXPECT_EQ(error, "");
@@ -225,7 +231,9 @@ TEST(GlbExport, PlaysWhereTheBodiesWere) {
         const Container glb(exported(name, run, 90));
         const Playback playback(glb);
         const json& root = glb.document["nodes"][0];
-        const Vec3d offset = root.contains("translation") ? Vec3d{root["translation"][0], root["translation"][1], root["translation"][2]} : Vec3d{};
+        const Vec3d offset = root.contains("translation")
+                                 ? Vec3d{root["translation"][0], root["translation"][1], root["translation"][2]}
+                                 : Vec3d{};
         double worst_metres = 0, worst_degrees = 0;
         std::size_t seen = 0;
         for (std::uint64_t k = 0; k < 90; ++k) {
@@ -236,11 +244,14 @@ TEST(GlbExport, PlaysWhereTheBodiesWere) {
                 const std::size_t node = body.row + 1;
                 there.insert(node);
                 if (body.row % 19 == 4) continue;  // jumps a kilometre: is in float where it can be
-                worst_metres = std::max(worst_metres, length(playback.translation(node, time) + offset - body.pose.position));
-                worst_degrees = std::max(worst_degrees, playback.rotation_error(node, time, body.pose.rotation) * 57.29578);
+                worst_metres =
+                    std::max(worst_metres, length(playback.translation(node, time) + offset - body.pose.position));
+                worst_degrees =
+                    std::max(worst_degrees, playback.rotation_error(node, time, body.pose.rotation) * 57.29578);
                 ++seen;
             }
-            for (std::size_t node = 1; node <= 60; ++node) EXPECT_EQ(playback.is_there(node, time), there.count(node) == 1);
+            for (std::size_t node = 1; node <= 60; ++node)
+                EXPECT_EQ(playback.is_there(node, time), there.count(node) == 1);
         }
         EXPECT_GT(seen, 4000u);
         EXPECT_LT(worst_metres, 0.0015);  // 1 mm by the keys, the rest by quanta
@@ -258,7 +269,8 @@ TEST(GlbExport, OfNothingIsAFileToo) {
     tinygltf::TinyGLTF reader;
     tinygltf::Model model;
     std::string error, warning;
-    EXPECT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()),
+    EXPECT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning,
+                                            reinterpret_cast<const unsigned char*>(glb.data()),
                                             static_cast<unsigned>(glb.size())))
         << error;
 }

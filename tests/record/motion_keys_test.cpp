@@ -10,14 +10,12 @@
 namespace fase::record {
 namespace {
 
-template <class Value>
-struct Reduced {
+template <class Value> struct Reduced {
     std::size_t keys = 0;
     double worst = 0;
 };
 /// Reduces 1,000 samples and looks how far the line through the keys misses them.
-template <class Value>
-Reduced<Value> reduce(const std::function<Value(double)>& motion, double tolerance) {
+template <class Value> Reduced<Value> reduce(const std::function<Value(double)>& motion, double tolerance) {
     MotionKeys<Value> reducer(tolerance);
     std::vector<MotionKey<Value>> samples;
     for (int i = 0; i < 1000; ++i) {
@@ -29,7 +27,8 @@ Reduced<Value> reduce(const std::function<Value(double)>& motion, double toleran
     Reduced<Value> result;
     result.keys = keys.size();
     for (const auto& sample : samples) {
-        const auto after = std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return key.time >= sample.time; });
+        const auto after =
+            std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return key.time >= sample.time; });
         if (after == keys.end() || after == keys.begin()) {
             const Value held = after == keys.end() ? keys.back().value : keys.front().value;
             result.worst = std::max(result.worst, distance_between(held, held, 0, sample.value));
@@ -53,7 +52,11 @@ TEST(MotionKeys, OfAStraightLineAreFew) {
 }
 
 TEST(MotionKeys, OfAThrowKeepWithinTheTolerance) {
-    const auto reduced = reduce<Vec3d>([](double t) { return Vec3d{3 * t, 20 * t - 4.905 * t * t, std::sin(t)}; }, 0.005);
+    const auto reduced = reduce<Vec3d>(
+        [](double t) {
+            return Vec3d{3 * t, 20 * t - 4.905 * t * t, std::sin(t)};
+        },
+        0.005);
     EXPECT_LE(reduced.worst, 0.005);
     EXPECT_LT(reduced.keys, 400u);
     EXPECT_GT(reduced.keys, 100u);
@@ -72,7 +75,9 @@ TEST(MotionKeys, OfTurningKeepWithinTheTolerance) {
     EXPECT_LE(steady.worst, 0.1 * degree);
     EXPECT_LT(steady.keys, 40u);  // each arc must stay below half a turn
     const auto tumbling = reduce<Quatd>(
-        [](double t) { return rotation_about(Vec3d{1, 0, 0}, std::sin(3 * t)) * rotation_about(Vec3d{0, 0, 1}, 5 * t); },
+        [](double t) {
+            return rotation_about(Vec3d{1, 0, 0}, std::sin(3 * t)) * rotation_about(Vec3d{0, 0, 1}, 5 * t);
+        },
         0.1 * degree);
     EXPECT_LE(tumbling.worst, 0.1 * degree);
     EXPECT_LT(tumbling.keys, 800u);

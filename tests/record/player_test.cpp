@@ -119,7 +119,8 @@ std::string with_changed_chunk(const std::string& bytes, std::size_t begin, std:
     ChunkPacker packer;
     std::vector<std::byte> chunk;
     EXPECT_TRUE(packer.append(ChunkType{type}, *raw, chunk));
-    return bytes.substr(0, begin) + std::string(reinterpret_cast<const char*>(chunk.data()), chunk.size()) + bytes.substr(end);
+    return bytes.substr(0, begin) + std::string(reinterpret_cast<const char*>(chunk.data()), chunk.size()) +
+           bytes.substr(end);
 }
 
 TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
@@ -133,9 +134,8 @@ TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
         with_changed_chunk(sample.bytes, begin, sample.ends[c], [&](auto& raw) { raw_size = raw.size(); });
         for (std::size_t at = 0; at < raw_size; ++at) {
             for (const int change : {1, 0x80, 0xff}) {
-                write_file(name, with_changed_chunk(sample.bytes, begin, sample.ends[c], [&](auto& raw) {
-                               raw[at] ^= static_cast<std::byte>(change);
-                           }));
+                write_file(name, with_changed_chunk(sample.bytes, begin, sample.ends[c],
+                                                    [&](auto& raw) { raw[at] ^= static_cast<std::byte>(change); }));
                 ++tried;
                 Result<Player> player = Player::open(name);
                 if (!player) {
@@ -157,7 +157,8 @@ TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
             }
         }
         for (std::size_t length = 0; length < raw_size; ++length) {
-            write_file(name, with_changed_chunk(sample.bytes, begin, sample.ends[c], [&](auto& raw) { raw.resize(length); }));
+            write_file(name,
+                       with_changed_chunk(sample.bytes, begin, sample.ends[c], [&](auto& raw) { raw.resize(length); }));
             Result<Player> player = Player::open(name);
             if (!player) continue;
             Frame frame;
@@ -244,7 +245,8 @@ TEST(Player, LivesOnWhenTheFileShrinksOrChanges) {
     std::string bytes = sample.bytes;
     std::fill(bytes.begin() + 100, bytes.end(), 'x');
     const auto overwrite = [&](const std::string& with) {  // the same file, which write_file() would make anew
-        std::fstream(name, std::ios::binary | std::ios::in | std::ios::out).write(with.data(), static_cast<std::streamsize>(with.size()));
+        std::fstream(name, std::ios::binary | std::ios::in | std::ios::out)
+            .write(with.data(), static_cast<std::streamsize>(with.size()));
     };
     overwrite(bytes);
     const Result<Frame> changed = (*player).frame(19);

@@ -11,8 +11,8 @@ namespace fase::record {
 namespace {
 
 Quat any_rotation(std::uint64_t i) {
-    return to_float(normalized(
-        Quatd{noise(i, 1, 0) - 0.5, noise(i, 2, 0) - 0.5, noise(i, 3, 0) - 0.5, noise(i, 4, 0) - 0.5}));
+    return to_float(
+        normalized(Quatd{noise(i, 1, 0) - 0.5, noise(i, 2, 0) - 0.5, noise(i, 3, 0) - 0.5, noise(i, 4, 0) - 0.5}));
 }
 
 TEST(PoseCode, KeepsAnyRotationWithinTwoHundredthsOfADegree) {

@@ -281,7 +281,8 @@ TEST(Recording, RefusesOptionsOutOfRange) {
          {RecorderOptions{.flush_seconds = -1}, RecorderOptions{.flush_seconds = std::nan("")},
           RecorderOptions{.flush_frames = 0}, RecorderOptions{.flush_frames = 65},
           RecorderOptions{.quanta_per_metre = 0}}) {
-        EXPECT_EQ(RecordingWriter::create(folder / "run", ArtificialRun::head(), options).status(), Status::BadArgument);
+        EXPECT_EQ(RecordingWriter::create(folder / "run", ArtificialRun::head(), options).status(),
+                  Status::BadArgument);
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

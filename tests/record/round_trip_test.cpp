@@ -52,7 +52,8 @@ void expect_same(const Frame& read, const Frame& written, bool contacts) {
         ASSERT_EQ(a.count, b.count);
         EXPECT_EQ(a.separations, b.separations);
         EXPECT_EQ(a.impulses, b.impulses);
-        for (std::size_t p = 0; p < static_cast<std::size_t>(a.count); ++p) expect_same_points(a.points[p], b.points[p]);
+        for (std::size_t p = 0; p < static_cast<std::size_t>(a.count); ++p)
+            expect_same_points(a.points[p], b.points[p]);
     }
 }
 

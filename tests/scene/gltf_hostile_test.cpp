@@ -182,11 +182,11 @@ TEST(HostileGltf, TreesThatAreNoneAreRefusedByTheNodesName) {
     EXPECT_NE(error_of(with_nodes(R"({"rotation":[0,0,0,0]})")).find("length 0"), std::string::npos);
 }
 
-TEST(HostileGltf, ALongChainOfNodesIsRefusedAndAManyChildrenAreRead) {
+TEST(HostileGltf, ALongChainOfNodesIsRefusedAndManyChildrenAreRead) {
     std::string chain, wide = R"({"children":[1)";
     for (int i = 0; i < 100000; ++i) chain += R"({"children":[)" + std::to_string(i + 1) + "]},";
     EXPECT_FALSE(read_text(with_nodes(chain + "{}")));
-    for (int i = 2; i < 100000; ++i) wide += "," + std::to_string(i);
+    for (int i = 2; i < 100000; ++i) wide.append(",").append(std::to_string(i));
     wide += "]}";
     for (int i = 1; i < 100000; ++i) wide += ",{}";
     EXPECT_TRUE(read_text(with_nodes(wide)));

@@ -217,6 +217,12 @@ TEST(WrittenGltf, RefusesScenesThatDoNotHoldTogether) {
     EXPECT_EQ(gltf_bytes(index, GltfForm::Text).status(), Status::OutOfRange);
     number.bodies[1].def.position.x = std::numeric_limits<double>::infinity();
     EXPECT_EQ(gltf_bytes(number, GltfForm::Text).status(), Status::BadArgument);
+    number = everything();
+    number.bodies[1].def.linear_damping = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(gltf_bytes(number, GltfForm::Text).status(), Status::BadArgument);
+    mesh = everything();
+    mesh.meshes[0] = {};
+    EXPECT_EQ(gltf_bytes(mesh, GltfForm::Text).status(), Status::BadArgument);
 }
 
 TEST(WrittenGltf, TakesItsFormFromTheEnding) {

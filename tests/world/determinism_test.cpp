@@ -1,6 +1,6 @@
 // The same calls give the same bits: for any threads, structure, lanes, and after a snapshot.
 #include "fase/world/state.hpp"
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

@@ -1,6 +1,6 @@
 // Bodies that are changed while the world lives.
 #include "fase/world/state.hpp"
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

@@ -1,7 +1,7 @@
 // What a world tells after a step.
 #include <set>
 
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

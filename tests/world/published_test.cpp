@@ -1,7 +1,7 @@
 // The benchmark set-ups of SimBenchmark (Kang, Hwangbo 2018), held to bounds well below the published figures of other engines.
 #include <cmath>
 
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

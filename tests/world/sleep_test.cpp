@@ -1,5 +1,5 @@
 // Who sleeps, what wakes whom, and what sleep costs.
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

@@ -1,7 +1,7 @@
 // What a world does, held against the formulas of mechanics.
 #include <cmath>
 
-#include "worlds.hpp"
+#include "tests/world/worlds.hpp"
 
 namespace fase {
 namespace {

@@ -1,22 +1,22 @@
 /** Keeps frame and camera in the address of the page: #f=120&c=… */
 
 export interface Place {
-    frame: number | null;
-    /** eye and target, six numbers */
-    camera: number[] | null;
+  frame: number | null;
+  /** eye and target, six numbers */
+  camera: number[] | null;
 }
 
 export function readHash(hash: string): Place {
-    const values = new URLSearchParams(hash.replace(/^#/, ""));
-    const frame = Number(values.get("f") ?? NaN);
-    const camera = (values.get("c") ?? "").split(",").map(Number);
-    return {
-        frame: Number.isInteger(frame) && frame >= 0 ? frame : null,
-        camera: camera.length === 6 && camera.every(Number.isFinite) ? camera : null,
-    };
+  const values = new URLSearchParams(hash.replace(/^#/, ""));
+  const frame = Number(values.get("f") ?? NaN);
+  const camera = (values.get("c") ?? "").split(",").map(Number);
+  return {
+    frame: Number.isInteger(frame) && frame >= 0 ? frame : null,
+    camera: camera.length === 6 && camera.every(Number.isFinite) ? camera : null,
+  };
 }
 
 export function writeHash({ frame, camera }: Place): string {
-    const digits = (x: number) => Number(x.toPrecision(6)).toString();
-    return `#f=${frame ?? 0}${camera ? `&c=${camera.map(digits).join(",")}` : ""}`;
+  const digits = (x: number) => Number(x.toPrecision(6)).toString();
+  return `#f=${frame ?? 0}${camera ? `&c=${camera.map(digits).join(",")}` : ""}`;
 }

@@ -8,76 +8,78 @@ const base64Piece = 4 * 1024 * 1024;
 
 /** Bytes of the recording that the page carries in `<script id="recording">`, or null. */
 export async function embeddedBytes(progress: Progress): Promise<Uint8Array | null> {
-    const element = document.getElementById("recording");
-    if (!element) return null;
-    const text = (element.textContent ?? "").trim();
-    element.remove();
-    const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
-    const bytes = new Uint8Array(Math.max(0, Math.floor((text.length * 3) / 4) - padding));
-    let filled = 0;
-    for (let from = 0; from < text.length; from += base64Piece) {
-        let piece: string;
-        try {
-            piece = atob(text.slice(from, from + base64Piece));
-        } catch {
-            throw new RecordingError("the recording inside this page is damaged (not base64)");
-        }
-        for (let i = 0; i < piece.length; ++i) bytes[filled++] = piece.charCodeAt(i);
-        progress("Unpacking the page", from / text.length);
-        await pause();
+  const element = document.getElementById("recording");
+  if (!element) return null;
+  const text = (element.textContent ?? "").trim();
+  element.remove();
+  const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
+  const bytes = new Uint8Array(Math.max(0, Math.floor((text.length * 3) / 4) - padding));
+  let filled = 0;
+  for (let from = 0; from < text.length; from += base64Piece) {
+    let piece: string;
+    try {
+      piece = atob(text.slice(from, from + base64Piece));
+    } catch {
+      throw new RecordingError("the recording inside this page is damaged (not base64)");
     }
-    return bytes.subarray(0, filled);
+    for (let i = 0; i < piece.length; ++i) bytes[filled++] = piece.charCodeAt(i);
+    progress("Unpacking the page", from / text.length);
+    await pause();
+  }
+  return bytes.subarray(0, filled);
 }
 
 /** Bytes that the server gives under /recording. */
 export async function fetchedBytes(progress: Progress): Promise<Uint8Array> {
-    let response: Response;
+  let response: Response;
+  try {
+    response = await fetch("/recording");
+  } catch {
+    throw new RecordingError("the server does not answer: is `fase view` still running?");
+  }
+  if (!response.ok || !response.body) {
+    const words = (await response.text().catch(() => "")).trim().slice(0, 500);
+    throw new RecordingError(
+      `the server answers ${response.status} ${response.statusText}${words ? `\n${words}` : ""}`,
+    );
+  }
+  const length = Number(response.headers.get("Content-Length")) || 0;
+  const pieces: Uint8Array[] = [];
+  let filled = 0;
+  const reader = response.body.getReader();
+  for (;;) {
+    let step: ReadableStreamReadResult<Uint8Array>;
     try {
-        response = await fetch("/recording");
+      step = await reader.read();
     } catch {
-        throw new RecordingError("the server does not answer: is `fase view` still running?");
+      throw new RecordingError(`the server broke off after ${filled} bytes`);
     }
-    if (!response.ok || !response.body) {
-        const words = (await response.text().catch(() => "")).trim().slice(0, 500);
-        throw new RecordingError(`the server answers ${response.status} ${response.statusText}${words ? `\n${words}` : ""}`);
-    }
-    const length = Number(response.headers.get("Content-Length")) || 0;
-    const pieces: Uint8Array[] = [];
-    let filled = 0;
-    const reader = response.body.getReader();
-    for (;;) {
-        let step: ReadableStreamReadResult<Uint8Array>;
-        try {
-            step = await reader.read();
-        } catch {
-            throw new RecordingError(`the server broke off after ${filled} bytes`);
-        }
-        if (step.done) break;
-        pieces.push(step.value);
-        filled += step.value.length;
-        progress(`Loading ${(filled / 1e6).toFixed(1)} MB`, length ? filled / length : null);
-    }
-    const bytes = new Uint8Array(filled);
-    let at = 0;
-    for (const piece of pieces) {
-        bytes.set(piece, at);
-        at += piece.length;
-    }
-    return bytes;
+    if (step.done) break;
+    pieces.push(step.value);
+    filled += step.value.length;
+    progress(`Loading ${(filled / 1e6).toFixed(1)} MB`, length ? filled / length : null);
+  }
+  const bytes = new Uint8Array(filled);
+  let at = 0;
+  for (const piece of pieces) {
+    bytes.set(piece, at);
+    at += piece.length;
+  }
+  return bytes;
 }
 
 /** Opens a recording in slices, so that the page stays alive. */
 export async function openInSlices(bytes: Uint8Array, progress: Progress): Promise<Recording> {
-    const work = Recording.open(bytes);
-    let last = performance.now();
-    for (;;) {
-        const step = work.next();
-        if (step.done) return step.value;
-        if (performance.now() - last < 12) continue;
-        progress("Checking", step.value);
-        await pause();
-        last = performance.now();
-    }
+  const work = Recording.open(bytes);
+  let last = performance.now();
+  for (;;) {
+    const step = work.next();
+    if (step.done) return step.value;
+    if (performance.now() - last < 12) continue;
+    progress("Checking", step.value);
+    await pause();
+    last = performance.now();
+  }
 }
 
 const pause = () => new Promise<void>((resume) => setTimeout(resume));

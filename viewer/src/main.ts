@@ -6,71 +6,71 @@ import { probeDrawing } from "./scene/webgl";
 import { byId } from "./ui/dom";
 
 function showProgress(text: string, share: number | null): void {
-    byId("loading").hidden = false;
-    byId("loading-text").textContent = text;
-    const bar = byId<HTMLProgressElement>("loading-bar");
-    if (share === null) bar.removeAttribute("value");
-    else bar.value = share;
+  byId("loading").hidden = false;
+  byId("loading-text").textContent = text;
+  const bar = byId<HTMLProgressElement>("loading-bar");
+  if (share === null) bar.removeAttribute("value");
+  else bar.value = share;
 }
 
 function showError(title: string, text: string): void {
-    byId("loading").hidden = true;
-    byId("error").hidden = false;
-    byId("error-title").textContent = title;
-    byId("error-text").textContent = text;
-    document.body.classList.add("bare");
+  byId("loading").hidden = true;
+  byId("error").hidden = false;
+  byId("error-title").textContent = title;
+  byId("error-text").textContent = text;
+  document.body.classList.add("bare");
 }
 
 /** A message that does not end the show; a click puts it away. */
 function showNote(text: string): void {
-    const note = byId("note");
-    note.textContent = text;
-    note.hidden = false;
-    note.addEventListener("click", () => (note.hidden = true), { once: true });
+  const note = byId("note");
+  note.textContent = text;
+  note.hidden = false;
+  note.addEventListener("click", () => (note.hidden = true), { once: true });
 }
 
 async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
-    byId("error").hidden = true;
-    document.body.classList.remove("bare");
-    const drawing = probeDrawing();
-    document.documentElement.classList.toggle("plain", drawing === "software");
-    if (drawing === "none") {
-        showError(
-            "This browser shows no 3D",
-            "The viewer needs WebGL 2. Turn on hardware acceleration in the browser's settings, or use a newer browser.",
-        );
-        return;
+  byId("error").hidden = true;
+  document.body.classList.remove("bare");
+  const drawing = probeDrawing();
+  document.documentElement.classList.toggle("plain", drawing === "software");
+  if (drawing === "none") {
+    showError(
+      "This browser shows no 3D",
+      "The viewer needs WebGL 2. Turn on hardware acceleration in the browser's settings, or use a newer browser.",
+    );
+    return;
+  }
+  try {
+    showProgress("Loading the recording", null);
+    const bytes = await getBytes();
+    const recording = await openInSlices(bytes, showProgress);
+    byId("loading").hidden = true;
+    const player = new Player(recording, drawing === "software", showNote);
+    if (recording.lost) {
+      const { frameCount, lost } = recording;
+      showNote(`The end of this recording is missing (${lost}). Shown is what is whole: ${frameCount} frames.`);
     }
-    try {
-        showProgress("Loading the recording", null);
-        const bytes = await getBytes();
-        const recording = await openInSlices(bytes, showProgress);
-        byId("loading").hidden = true;
-        const player = new Player(recording, drawing === "software", showNote);
-        if (recording.lost) {
-            const { frameCount, lost } = recording;
-            showNote(`The end of this recording is missing (${lost}). Shown is what is whole: ${frameCount} frames.`);
-        }
-        document.documentElement.dataset.state = "ready";
-        Object.assign(window, { fase: player });
-    } catch (error) {
-        document.documentElement.dataset.state = "error";
-        const isKnown = error instanceof RecordingError;
-        showError(isKnown ? "This recording cannot be shown" : "The viewer failed", (error as Error).message);
-        if (!isKnown) console.error(error);
-    }
+    document.documentElement.dataset.state = "ready";
+    Object.assign(window, { fase: player });
+  } catch (error) {
+    document.documentElement.dataset.state = "error";
+    const isKnown = error instanceof RecordingError;
+    showError(isKnown ? "This recording cannot be shown" : "The viewer failed", (error as Error).message);
+    if (!isKnown) console.error(error);
+  }
 }
 
 function openFile(file: File): void {
-    if (document.documentElement.dataset.state === "ready") {
-        showNote("One recording at a time: reload the page to open another.");
-        return;
-    }
-    void start(async () => new Uint8Array(await file.arrayBuffer()));
+  if (document.documentElement.dataset.state === "ready") {
+    showNote("One recording at a time: reload the page to open another.");
+    return;
+  }
+  void start(async () => new Uint8Array(await file.arrayBuffer()));
 }
 
 byId<HTMLInputElement>("open").addEventListener("change", (event) => {
-    const file = (event.target as HTMLInputElement).files?.[0];
-    if (file) openFile(file);
+  const file = (event.target as HTMLInputElement).files?.[0];
+  if (file) openFile(file);
 });
 void start(async () => (await embeddedBytes(showProgress)) ?? (await fetchedBytes(showProgress)));

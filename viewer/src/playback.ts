@@ -3,62 +3,62 @@
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
 export class Playback {
-    playing = false;
-    speed = 1;
-    /** frames, with a fraction: how far we are between two */
-    private at = 0;
+  playing = false;
+  speed = 1;
+  /** frames, with a fraction: how far we are between two */
+  private at = 0;
 
-    /** `secondsPerFrame`: mean time between frames, above 0. */
-    constructor(
-        readonly frameCount: number,
-        readonly secondsPerFrame: number,
-        private readonly onChange: () => void,
-    ) {}
+  /** `secondsPerFrame`: mean time between frames, above 0. */
+  constructor(
+    readonly frameCount: number,
+    readonly secondsPerFrame: number,
+    private readonly onChange: () => void,
+  ) {}
 
-    get frame(): number {
-        return Math.floor(this.at);
-    }
-    /** 0 to below 1: how far from this frame to the next */
-    get share(): number {
-        return this.at - this.frame;
-    }
-    get last(): number {
-        return this.frameCount - 1;
-    }
+  get frame(): number {
+    return Math.floor(this.at);
+  }
+  /** 0 to below 1: how far from this frame to the next */
+  get share(): number {
+    return this.at - this.frame;
+  }
+  get last(): number {
+    return this.frameCount - 1;
+  }
 
-    /** Goes to a frame and stays within the recording. */
-    seek(frame: number): void {
-        this.at = Math.max(0, Math.min(this.last, Math.round(frame)));
-        this.onChange();
-    }
-    /** Pauses and goes so many frames on or back. */
-    step(frames: number): void {
-        this.playing = false;
-        this.seek(frames > 0 ? this.frame + frames : Math.ceil(this.at) + frames);
-    }
-    toggle(): void {
-        this.playing = !this.playing && this.last > 0;
-        if (this.playing && this.frame >= this.last) this.at = 0;
-        if (!this.playing) this.at = this.frame;
-        this.onChange();
-    }
-    setSpeed(speed: number): void {
-        this.speed = speed;
-        this.onChange();
-    }
-    faster(steps: number): void {
-        const now = speeds.findIndex((speed) => speed >= this.speed);
-        this.setSpeed(speeds[Math.max(0, Math.min(speeds.length - 1, now + steps))]);
-    }
+  /** Goes to a frame and stays within the recording. */
+  seek(frame: number): void {
+    this.at = Math.max(0, Math.min(this.last, Math.round(frame)));
+    this.onChange();
+  }
+  /** Pauses and goes so many frames on or back. */
+  step(frames: number): void {
+    this.playing = false;
+    this.seek(frames > 0 ? this.frame + frames : Math.ceil(this.at) + frames);
+  }
+  toggle(): void {
+    this.playing = !this.playing && this.last > 0;
+    if (this.playing && this.frame >= this.last) this.at = 0;
+    if (!this.playing) this.at = this.frame;
+    this.onChange();
+  }
+  setSpeed(speed: number): void {
+    this.speed = speed;
+    this.onChange();
+  }
+  faster(steps: number): void {
+    const now = speeds.findIndex((speed) => speed >= this.speed);
+    this.setSpeed(speeds[Math.max(0, Math.min(speeds.length - 1, now + steps))]);
+  }
 
-    /** Lets `seconds` of wall clock go by; a long gap (a sleeping tab) counts as a short one. */
-    advance(seconds: number): void {
-        if (!this.playing) return;
-        this.at += (Math.min(seconds, 0.1) * this.speed) / this.secondsPerFrame;
-        if (this.at >= this.last) {
-            this.at = this.last;
-            this.playing = false;
-        }
-        this.onChange();
+  /** Lets `seconds` of wall clock go by; a long gap (a sleeping tab) counts as a short one. */
+  advance(seconds: number): void {
+    if (!this.playing) return;
+    this.at += (Math.min(seconds, 0.1) * this.speed) / this.secondsPerFrame;
+    if (this.at >= this.last) {
+      this.at = this.last;
+      this.playing = false;
     }
+    this.onChange();
+  }
 }

@@ -20,264 +20,274 @@ const hashPauseMs = 400;
 const narrow = 720;
 
 export class Player {
-    readonly playback: Playback;
-    readonly view: View;
-    private readonly idle: IdleQueue;
-    private readonly charts: Charts;
-    private readonly panel: BodyPanel;
-    private readonly scrub = byId<HTMLInputElement>("scrub");
-    private readonly quality = new Quality();
-    private isDirty = true;
-    private wasMoving = false;
-    private isFollowing = false;
-    private drawn = -1;
-    private lastTick = 0;
-    private hashTimer = 0;
-    private chartTimer = 0;
-    private preparing = -1;
+  readonly playback: Playback;
+  readonly view: View;
+  private readonly idle: IdleQueue;
+  private readonly charts: Charts;
+  private readonly panel: BodyPanel;
+  private readonly scrub = byId<HTMLInputElement>("scrub");
+  private readonly quality = new Quality();
+  private isDirty = true;
+  private wasMoving = false;
+  private isFollowing = false;
+  private drawn = -1;
+  private lastTick = 0;
+  private hashTimer = 0;
+  private chartTimer = 0;
+  private preparing = -1;
 
-    /** `onTrouble` shows a message that does not end the show. */
-    constructor(private readonly recording: Recording, isSoftware: boolean, private readonly onTrouble: (text: string) => void) {
-        const { tables, frameCount } = recording;
-        const canvas = byId<HTMLCanvasElement>("scene");
-        const dirty = () => this.touch();
-        const place = readHash(location.hash);
-        this.view = new View(canvas, tables, recording.frame(0), isSoftware, () => {
-            this.isDirty = true;
-            this.saveHash();
-        });
-        this.playback = new Playback(frameCount, tables.timeStep > 0 ? tables.timeStep : 1 / 60, dirty);
-        this.idle = new IdleQueue((error) => this.onTrouble((error as Error).message));
-        this.charts = new Charts(tables, frameCount, (frame) => this.playback.seek(frame));
-        this.panel = new BodyPanel(tables, { follow: () => this.follow(!this.isFollowing), close: () => this.select(null) });
-        document.title = `${tables.title || "recording"} – Fase`;
-        this.scrub.max = String(frameCount - 1);
-        this.connect(canvas);
-        byId("charts").hidden = window.innerWidth <= narrow;
-        byId("chart-toggle").setAttribute("aria-pressed", String(!byId("charts").hidden));
-        this.charts.draw(0);
-        this.resize();
-        new ResizeObserver(() => this.noteDock()).observe(byId("dock"));
-        this.view.reframe();
-        this.setColouring("material");
-        if (place.camera) this.view.camera.place = place.camera;
-        if (place.frame !== null) this.playback.seek(place.frame);
-        else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
-        this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
-        this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
-        if (!tables.hasContacts) {
-            byId<HTMLButtonElement>("contacts").disabled = true;
-            byId("contacts").title = "No contact points in this recording";
-        }
-        requestAnimationFrame((now) => this.tick(now));
+  /** `onTrouble` shows a message that does not end the show. */
+  constructor(
+    private readonly recording: Recording,
+    isSoftware: boolean,
+    private readonly onTrouble: (text: string) => void,
+  ) {
+    const { tables, frameCount } = recording;
+    const canvas = byId<HTMLCanvasElement>("scene");
+    const dirty = () => this.touch();
+    const place = readHash(location.hash);
+    this.view = new View(canvas, tables, recording.frame(0), isSoftware, () => {
+      this.isDirty = true;
+      this.saveHash();
+    });
+    this.playback = new Playback(frameCount, tables.timeStep > 0 ? tables.timeStep : 1 / 60, dirty);
+    this.idle = new IdleQueue((error) => this.onTrouble((error as Error).message));
+    this.charts = new Charts(tables, frameCount, (frame) => this.playback.seek(frame));
+    this.panel = new BodyPanel(tables, {
+      follow: () => this.follow(!this.isFollowing),
+      close: () => this.select(null),
+    });
+    document.title = `${tables.title || "recording"} – Fase`;
+    this.scrub.max = String(frameCount - 1);
+    this.connect(canvas);
+    byId("charts").hidden = window.innerWidth <= narrow;
+    byId("chart-toggle").setAttribute("aria-pressed", String(!byId("charts").hidden));
+    this.charts.draw(0);
+    this.resize();
+    new ResizeObserver(() => this.noteDock()).observe(byId("dock"));
+    this.view.reframe();
+    this.setColouring("material");
+    if (place.camera) this.view.camera.place = place.camera;
+    if (place.frame !== null) this.playback.seek(place.frame);
+    else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
+    this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
+    this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
+    if (!tables.hasContacts) {
+      byId<HTMLButtonElement>("contacts").disabled = true;
+      byId("contacts").title = "No contact points in this recording";
     }
+    requestAnimationFrame((now) => this.tick(now));
+  }
 
-    private connect(canvas: HTMLCanvasElement): void {
-        const { playback, view } = this;
-        const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
-        const help = byId<HTMLDialogElement>("help");
-        const commands = {
-            toggle: () => playback.toggle(),
-            step: (frames: number) => playback.step(frames),
-            stepSecond: (direction: number) => playback.step(direction * Math.max(1, Math.round(1 / playback.secondsPerFrame))),
-            toEnd: (last: boolean) => playback.seek(last ? playback.last : 0),
-            faster: (steps: number) => playback.faster(steps),
-            nextColours: () => this.setColouring(colourings[(colourings.indexOf(view.colouring) + 1) % colourings.length]),
-            toggleBoxes: () => this.press("boxes", (on) => (view.showsBoxes = on)),
-            toggleContacts: () => this.press("contacts", (on) => (view.showsContacts = on)),
-            toggleCharts: () => this.press("chart-toggle", (on) => this.showCharts(on)),
-            togglePanels: () => this.togglePanels(),
-            follow: () => this.follow(!this.isFollowing),
-            reframe: () => {
-                this.follow(false);
-                view.reframe();
-                this.touch();
-            },
-            letGo: () => this.select(null),
-            help: () => (help.open ? help.close() : help.showModal()),
-        };
-        click("play", commands.toggle);
-        click("back", () => commands.step(-1));
-        click("forward", () => commands.step(1));
-        click("boxes", commands.toggleBoxes);
-        click("contacts", commands.toggleContacts);
-        click("chart-toggle", commands.toggleCharts);
-        click("reframe", commands.reframe);
-        click("panels", commands.togglePanels);
-        click("show-panels", commands.togglePanels);
-        click("help-open", commands.help);
-        click("help-close", commands.help);
-        help.addEventListener("click", (event) => event.target === help && help.close());
-        listenToKeys(commands);
-        listenToTaps(canvas, (x, y) => this.select(view.pickAt(x, y)?.body ?? null));
-
-        const colours = byId<HTMLSelectElement>("colours");
-        colours.addEventListener("change", () => this.setColouring(colours.value as Colouring));
-        const speed = byId<HTMLSelectElement>("speed");
-        speed.replaceChildren(...speeds.map((value) => new Option(`${value}×`, String(value))));
-        speed.addEventListener("change", () => playback.setSpeed(Number(speed.value)));
-        this.scrub.addEventListener("input", () => playback.seek(Number(this.scrub.value)));
-        window.addEventListener("resize", () => this.resize());
-        window.addEventListener("hashchange", () => {
-            const place = readHash(location.hash);
-            if (place.camera) view.camera.place = place.camera;
-            if (place.frame !== null) playback.seek(place.frame);
-        });
-    }
-
-    private touch(): void {
-        this.isDirty = true;
-        this.drawn = -1;
-        this.saveHash();
-    }
-
-    private tick(now: number): void {
-        requestAnimationFrame((next) => this.tick(next));
-        const interval = now - this.lastTick;
-        this.playback.advance(interval / 1000);
-        this.lastTick = now;
-        const state = document.documentElement.dataset;
-        const isMoving = this.isDirty;
-        state.still = String(!isMoving && !this.view.isCoarse);
-        if (!isMoving && !this.view.isCoarse) return;
-        this.isDirty = false;
-        if (this.drawn < 0) this.showFrame();
-        if (isMoving && this.wasMoving) this.quality.note(interval);
-        this.wasMoving = isMoving;
-        if (this.view.draw(isMoving ? this.quality.share : 1)) this.isDirty = true;
-        state.frame = String(this.playback.frame);
-    }
-
-    private showFrame(): void {
-        const { playback, view } = this;
-        let frame: Frame;
-        try {
-            frame = this.frameAt(playback.frame);
-            view.show(frame, playback.share > 0 ? this.frameAt(playback.frame + 1) : frame, playback.share);
-            this.showBody(frame);
-        } catch (error) {
-            playback.playing = false;
-            this.onTrouble((error as Error).message);
-            return;
-        }
-        this.drawn = playback.frame;
-        this.prepareNext();
-        this.showState(frame);
-    }
-
-    private frameAt(number: number): Frame {
-        return this.recording.frame(Math.max(0, Math.min(this.playback.last, number)));
-    }
-
-    private prepareNext(): void {
-        const ahead = this.playback.frame + prepareAhead;
-        if (!this.playback.playing || Math.floor(ahead / 32) === this.preparing) return;
-        this.preparing = Math.floor(ahead / 32);
-        this.idle.add(this.recording.prepare(ahead), { first: true });
-    }
-
-    private showState(frame: Frame): void {
-        const { playback, recording } = this;
-        const { bodies, title } = recording.tables;
-        let living = 0;
-        let awake = 0;
-        for (let row = 0; row < bodies.length; ++row) {
-            living += frame.present[row];
-            awake += frame.present[row] & frame.flags[row] & 1;
-        }
-        byId("summary").textContent =
-            `${title ? `${title} · ` : ""}${living.toLocaleString("en-GB")} bodies, ${awake.toLocaleString("en-GB")} awake`;
-        const isPlaying = playback.playing;
-        const play = byId("play");
-        play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
-        play.querySelector("use")?.setAttribute("href", isPlaying ? "#icon-pause" : "#icon-play");
-        this.scrub.value = String(playback.frame);
-        this.scrub.setAttribute("aria-valuetext", `frame ${playback.frame}, ${frame.time.toFixed(2)} seconds`);
-        const time = document.createElement("b");
-        time.textContent = `${frame.time.toFixed(2)} s`;
-        byId("clock").replaceChildren(time, ` ${playback.frame} / ${playback.last}`);
-        byId<HTMLSelectElement>("speed").value = String(playback.speed);
-        byId<HTMLButtonElement>("back").disabled = playback.frame === 0 && playback.share === 0;
-        byId<HTMLButtonElement>("forward").disabled = playback.frame >= playback.last;
-        if (!byId("charts").hidden) this.charts.draw(playback.frame);
-    }
-
-    private showBody(frame: Frame): void {
-        const row = this.view.selected;
-        if (row === null && this.panel.shown === null) return;
-        const before = this.frameAt(frame.number - 1);
-        const after = this.frameAt(frame.number + 1);
-        const isIn = (other: Frame) => row !== null && other.present[row] === 1;
-        this.panel.show(row, frame, isIn(before) ? before : frame, isIn(after) ? after : frame, this.isFollowing);
-    }
-
-    private refreshCharts(): void {
-        const { summaries } = this.charts;
-        this.charts.take();
-        if (summaries.length >= this.recording.frameCount) window.clearInterval(this.chartTimer);
-        drawMarks(byId<HTMLCanvasElement>("marks"), summaries, this.recording.frameCount);
-        if (!byId("charts").hidden) this.charts.draw(this.playback.frame);
-    }
-
-    private select(row: number | null): void {
-        if (row !== this.view.selected) this.follow(false);
-        this.view.select(row);
+  private connect(canvas: HTMLCanvasElement): void {
+    const { playback, view } = this;
+    const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
+    const help = byId<HTMLDialogElement>("help");
+    const commands = {
+      toggle: () => playback.toggle(),
+      step: (frames: number) => playback.step(frames),
+      stepSecond: (direction: number) =>
+        playback.step(direction * Math.max(1, Math.round(1 / playback.secondsPerFrame))),
+      toEnd: (last: boolean) => playback.seek(last ? playback.last : 0),
+      faster: (steps: number) => playback.faster(steps),
+      nextColours: () => this.setColouring(colourings[(colourings.indexOf(view.colouring) + 1) % colourings.length]),
+      toggleBoxes: () => this.press("boxes", (on) => (view.showsBoxes = on)),
+      toggleContacts: () => this.press("contacts", (on) => (view.showsContacts = on)),
+      toggleCharts: () => this.press("chart-toggle", (on) => this.showCharts(on)),
+      togglePanels: () => this.togglePanels(),
+      follow: () => this.follow(!this.isFollowing),
+      reframe: () => {
+        this.follow(false);
+        view.reframe();
         this.touch();
-    }
+      },
+      letGo: () => this.select(null),
+      help: () => (help.open ? help.close() : help.showModal()),
+    };
+    click("play", commands.toggle);
+    click("back", () => commands.step(-1));
+    click("forward", () => commands.step(1));
+    click("boxes", commands.toggleBoxes);
+    click("contacts", commands.toggleContacts);
+    click("chart-toggle", commands.toggleCharts);
+    click("reframe", commands.reframe);
+    click("panels", commands.togglePanels);
+    click("show-panels", commands.togglePanels);
+    click("help-open", commands.help);
+    click("help-close", commands.help);
+    help.addEventListener("click", (event) => event.target === help && help.close());
+    listenToKeys(commands);
+    listenToTaps(canvas, (x, y) => this.select(view.pickAt(x, y)?.body ?? null));
 
-    private follow(on: boolean): void {
-        const row = this.view.selected;
-        this.isFollowing = on && row !== null;
-        this.view.follow(this.isFollowing ? row : null);
-        this.touch();
-    }
+    const colours = byId<HTMLSelectElement>("colours");
+    colours.addEventListener("change", () => this.setColouring(colours.value as Colouring));
+    const speed = byId<HTMLSelectElement>("speed");
+    speed.replaceChildren(...speeds.map((value) => new Option(`${value}×`, String(value))));
+    speed.addEventListener("change", () => playback.setSpeed(Number(speed.value)));
+    this.scrub.addEventListener("input", () => playback.seek(Number(this.scrub.value)));
+    window.addEventListener("resize", () => this.resize());
+    window.addEventListener("hashchange", () => {
+      const place = readHash(location.hash);
+      if (place.camera) view.camera.place = place.camera;
+      if (place.frame === null) return;
+      playback.playing = false;
+      playback.seek(place.frame);
+    });
+  }
 
-    private setColouring(by: Colouring): void {
-        this.view.colouring = by;
-        byId<HTMLSelectElement>("colours").value = by;
-        byId("legend").replaceChildren(...legendOf(by).map(({ name, colour }) => legendKey(colour, name)));
-        this.touch();
-    }
+  private touch(): void {
+    this.isDirty = true;
+    this.drawn = -1;
+    this.saveHash();
+  }
 
-    private press(id: string, act: (on: boolean) => void): void {
-        const button = byId<HTMLButtonElement>(id);
-        if (button.disabled) return;
-        const on = button.getAttribute("aria-pressed") !== "true";
-        button.setAttribute("aria-pressed", String(on));
-        act(on);
-        this.touch();
-    }
+  private tick(now: number): void {
+    requestAnimationFrame((next) => this.tick(next));
+    const interval = now - this.lastTick;
+    this.playback.advance(interval / 1000);
+    this.lastTick = now;
+    const state = document.documentElement.dataset;
+    const isMoving = this.isDirty;
+    state.still = String(!isMoving && !this.view.isCoarse);
+    if (!isMoving && !this.view.isCoarse) return;
+    this.isDirty = false;
+    if (this.drawn < 0) this.showFrame();
+    if (isMoving && this.wasMoving) this.quality.note(interval);
+    this.wasMoving = isMoving;
+    if (this.view.draw(isMoving ? this.quality.share : 1)) this.isDirty = true;
+    state.frame = String(this.playback.frame);
+  }
 
-    private showCharts(on: boolean): void {
-        byId("charts").hidden = !on;
-        this.resize();
+  private showFrame(): void {
+    const { playback, view } = this;
+    let frame: Frame;
+    try {
+      frame = this.frameAt(playback.frame);
+      view.show(frame, playback.share > 0 ? this.frameAt(playback.frame + 1) : frame, playback.share);
+      this.showBody(frame);
+    } catch (error) {
+      playback.playing = false;
+      this.onTrouble((error as Error).message);
+      return;
     }
+    this.drawn = playback.frame;
+    this.prepareNext();
+    this.showState(frame);
+  }
 
-    private togglePanels(): void {
-        const bare = document.body.classList.toggle("bare");
-        byId("show-panels").hidden = !bare;
-        this.resize();
-    }
+  private frameAt(number: number): Frame {
+    return this.recording.frame(Math.max(0, Math.min(this.playback.last, number)));
+  }
 
-    private resize(): void {
-        this.noteDock();
-        this.view.resize(window.innerWidth, window.innerHeight, byId("dock").offsetHeight);
-        this.charts.resize();
-        this.refreshCharts();
-        this.touch();
-    }
+  private prepareNext(): void {
+    const ahead = this.playback.frame + prepareAhead;
+    if (!this.playback.playing || Math.floor(ahead / 32) === this.preparing) return;
+    this.preparing = Math.floor(ahead / 32);
+    this.idle.add(this.recording.prepare(ahead), { first: true });
+  }
 
-    /** Other panels keep clear of the dock. */
-    private noteDock(): void {
-        document.documentElement.style.setProperty("--dock", `${byId("dock").offsetHeight}px`);
+  private showState(frame: Frame): void {
+    const { playback, recording } = this;
+    const { bodies, title } = recording.tables;
+    let living = 0;
+    let awake = 0;
+    for (let row = 0; row < bodies.length; ++row) {
+      living += frame.present[row];
+      awake += frame.present[row] & frame.flags[row] & 1;
     }
+    byId("summary").textContent =
+      `${title ? `${title} · ` : ""}${living.toLocaleString("en-GB")} bodies, ${awake.toLocaleString("en-GB")} awake`;
+    const isPlaying = playback.playing;
+    const play = byId("play");
+    play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
+    play.querySelector("use")?.setAttribute("href", isPlaying ? "#icon-pause" : "#icon-play");
+    this.scrub.value = String(playback.frame);
+    this.scrub.setAttribute("aria-valuetext", `frame ${playback.frame}, ${frame.time.toFixed(2)} seconds`);
+    const time = document.createElement("b");
+    time.textContent = `${frame.time.toFixed(2)} s`;
+    byId("clock").replaceChildren(time, ` ${playback.frame} / ${playback.last}`);
+    byId<HTMLSelectElement>("speed").value = String(playback.speed);
+    byId<HTMLButtonElement>("back").disabled = playback.frame === 0 && playback.share === 0;
+    byId<HTMLButtonElement>("forward").disabled = playback.frame >= playback.last;
+    if (!byId("charts").hidden) this.charts.draw(playback.frame);
+  }
 
-    private saveHash(): void {
-        window.clearTimeout(this.hashTimer);
-        this.hashTimer = window.setTimeout(() => {
-            if (this.playback.playing) return this.saveHash();
-            const hash = writeHash({ frame: this.playback.frame, camera: this.view.camera.place });
-            history.replaceState(null, "", hash);
-        }, hashPauseMs);
-    }
+  private showBody(frame: Frame): void {
+    const row = this.view.selected;
+    if (row === null && this.panel.shown === null) return;
+    const before = this.frameAt(frame.number - 1);
+    const after = this.frameAt(frame.number + 1);
+    const isIn = (other: Frame) => row !== null && other.present[row] === 1;
+    this.panel.show(row, frame, isIn(before) ? before : frame, isIn(after) ? after : frame, this.isFollowing);
+  }
+
+  private refreshCharts(): void {
+    const { summaries } = this.charts;
+    this.charts.take();
+    if (summaries.length >= this.recording.frameCount) window.clearInterval(this.chartTimer);
+    drawMarks(byId<HTMLCanvasElement>("marks"), summaries, this.recording.frameCount);
+    if (!byId("charts").hidden) this.charts.draw(this.playback.frame);
+  }
+
+  private select(row: number | null): void {
+    if (row !== this.view.selected) this.follow(false);
+    this.view.select(row);
+    this.touch();
+  }
+
+  private follow(on: boolean): void {
+    const row = this.view.selected;
+    this.isFollowing = on && row !== null;
+    this.view.follow(this.isFollowing ? row : null);
+    this.touch();
+  }
+
+  private setColouring(by: Colouring): void {
+    this.view.colouring = by;
+    byId<HTMLSelectElement>("colours").value = by;
+    byId("legend").replaceChildren(...legendOf(by).map(({ name, colour }) => legendKey(colour, name)));
+    this.touch();
+  }
+
+  private press(id: string, act: (on: boolean) => void): void {
+    const button = byId<HTMLButtonElement>(id);
+    if (button.disabled) return;
+    const on = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(on));
+    act(on);
+    this.touch();
+  }
+
+  private showCharts(on: boolean): void {
+    byId("charts").hidden = !on;
+    this.resize();
+  }
+
+  private togglePanels(): void {
+    const bare = document.body.classList.toggle("bare");
+    byId("show-panels").hidden = !bare;
+    this.resize();
+  }
+
+  private resize(): void {
+    this.noteDock();
+    this.view.resize(window.innerWidth, window.innerHeight, byId("dock").offsetHeight);
+    this.charts.resize();
+    this.refreshCharts();
+    this.touch();
+  }
+
+  /** Other panels keep clear of the dock. */
+  private noteDock(): void {
+    document.documentElement.style.setProperty("--dock", `${byId("dock").offsetHeight}px`);
+  }
+
+  private saveHash(): void {
+    window.clearTimeout(this.hashTimer);
+    this.hashTimer = window.setTimeout(() => {
+      if (this.playback.playing) return this.saveHash();
+      const hash = writeHash({ frame: this.playback.frame, camera: this.view.camera.place });
+      history.replaceState(null, "", hash);
+    }, hashPauseMs);
+  }
 }

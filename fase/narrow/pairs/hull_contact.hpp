@@ -104,15 +104,19 @@ inline HullContact touch_hulls(const HullView& a, const HullView& b, const Local
     const Vec3 face_normal = from_a ? a.faces[best.face].plane.normal : pair.turn * -b.faces[best.face].plane.normal;
     if (edges.found && dot(edges.normal, face_normal) < cos_10) return over_edges();
     const HullContact contact = touch_hull_faces(pair, best, from_a, margin);
-    if (edges.found) {
+    const auto faces_or_edges = [&] {
         const float as_deep = edges.separation + clearly + 0.03f * std::fabs(edges.separation);
-        return contact.deepest <= as_deep ? HullContact{contact.manifold} : over_edges();
-    }
+        const bool by_faces = contact.deepest <= as_deep && dot(edges.normal, face_normal) >= cos_10;
+        return by_faces ? HullContact{contact.manifold} : over_edges();
+    };
+    if (edges.found) return faces_or_edges();
     if (contact.whole) return contact;
     // The face won only because faces are preferred, but its contact is not there.
     if (by_face < 0) edges = find_best_edges(pair, of_a, of_b, by_face, 0, noise);
-    if (edges.found) return over_edges();
-    return {contact.manifold, by_face < 0 || contact.manifold.count > 0};
+    if (edges.found) return faces_or_edges();
+    // Apart, the nearest place may lie beside the face, and nearer than all that is over it.
+    const bool nearest_is_there = contact.manifold.count > 0 && contact.deepest <= by_face + 0.1f * margin;
+    return {contact.manifold, by_face < 0 || nearest_is_there};
 }
 
 }  // namespace fase::narrow

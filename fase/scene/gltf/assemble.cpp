@@ -305,6 +305,7 @@ private:
         }
         Result<TurnedShape> turned = transformed(shape, map);
         if (!turned) refuse(node, turned.error().problem, turned.error().remedy);
+        document_.spend(node, turned->shape);
         out = {add_shape(std::move(turned->shape)), turned->rotation};
     }
 
@@ -325,10 +326,12 @@ private:
             });
         }
         Result<ConvexHull> hull = build_convex_hull(points);
-        if (hull)
-            out.first = add_shape(*std::move(hull));
-        else
+        if (!hull) {
             notes_.add(fmt::format("a convex collider is left out: {}", hull.error().problem));
+            return;
+        }
+        out.first = add_shape(*std::move(hull));
+        document_.spend(source.json, scene_.shapes[out.first]);
     }
 
     void add_visuals(std::uint32_t mesh, const Placement& place, std::uint32_t body) {

@@ -118,7 +118,8 @@ void Document::load_buffers() {
 }
 
 void Document::check_views() const {
-    for (const JsonValue view : views_) {
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+        const JsonValue view = views_[i];
         static_cast<void>(needed(view, "buffer", JsonKind::Number));
         const JsonValue buffer = buffers_.empty()
                                      ? (refuse(view, "found a view of a buffer, need buffers in the file"), view)
@@ -283,6 +284,14 @@ void Document::spend(JsonValue at, std::uint64_t bytes) {
         refuse(at,
                fmt::format("found data that grows to {} bytes and more, need a file that grows less when read", bytes));
     budget_ -= bytes;
+}
+
+void Document::spend(JsonValue at, const Shape& shape) {
+    if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
+        spend(at, hull->vertices.size() * sizeof(Vec3) + hull->faces.size() * sizeof(ConvexHull::Face) +
+                      hull->face_vertices.size() * sizeof(std::uint32_t) +
+                      hull->edges.size() * sizeof(ConvexHull::Edge));
+    }
 }
 
 std::vector<double> Document::elements(std::uint32_t index, int components) {

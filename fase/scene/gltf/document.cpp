@@ -130,16 +130,11 @@ void Document::check_asset() const {
                fmt::format("found a file for readers of {}, need 2.0", quoted_short(*least)));
 }
 
-std::vector<JsonValue> Document::table(std::string_view name) const {
-    std::vector<JsonValue> all;
-    const std::optional<JsonValue> array = member(root(), name, JsonKind::Array);
-    if (!array) return all;
-    all.reserve(array->size());
-    array->for_each_element([&](JsonValue value) {
-        if (!value.is(JsonKind::Object)) refuse(value, fmt::format("found {}, need an object", name_of(value.kind())));
-        all.push_back(value);
-    });
-    if (all.empty()) refuse(*array, "found an empty array, need at least one element or none of it");
+Table Document::table(std::string_view name) const {
+    Table all(json_, root(), name);
+    if (const auto array = root().find(name); array && all.empty()) {
+        refuse(*array, "found an empty array, need at least one element or none of it");
+    }
     return all;
 }
 
@@ -177,7 +172,8 @@ void Document::check_nodes() {
         for (const std::uint32_t node : path) reached[node] = 1;
     }
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) static_cast<void>(local(i));
-    for (const JsonValue scene : scenes_) {
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+        const JsonValue scene = scenes_[i];
         const std::optional<JsonValue> roots = member(scene, "nodes", JsonKind::Array);
         if (!roots) continue;
         std::vector<std::uint32_t> seen;

@@ -40,9 +40,10 @@ public:
     /// @param bytes of the .gltf or .glb; @param folder where uris start.
     Document(const std::vector<std::byte>& bytes, std::string folder);
 
+    [[nodiscard]] const JsonDocument& json() const { return json_; }
     [[nodiscard]] JsonValue root() const { return json_.root(); }
-    [[nodiscard]] const std::vector<JsonValue>& nodes() const { return nodes_; }
-    [[nodiscard]] const std::vector<JsonValue>& meshes() const { return meshes_; }
+    [[nodiscard]] const Table& nodes() const { return nodes_; }
+    [[nodiscard]] const Table& meshes() const { return meshes_; }
     [[nodiscard]] std::optional<std::uint32_t> parent(std::uint32_t node) const;
     [[nodiscard]] std::string name(std::uint32_t node) const;
     /// Where the node stands in its parent's frame.
@@ -62,6 +63,11 @@ public:
     std::vector<Vec3> positions(const Primitive& primitive);
     /// Three indices a triangle, each below `points`; empty for points and lines.
     std::vector<std::uint32_t> triangles(const Primitive& primitive, std::size_t points);
+    /// Counts memory that the file makes the reader take: refuses at `at` when all of it passes 8 times the files and
+    /// 32 MiB.
+    void spend(JsonValue at, std::uint64_t bytes);
+    /// spend() for a shape that was made of a few numbers: a hull.
+    void spend(JsonValue at, const Shape& shape);
 
 private:
     struct Accessor;
@@ -74,18 +80,16 @@ private:
     void check_accessors() const;
     void check_meshes() const;
     void check_nodes();
-    [[nodiscard]] std::vector<JsonValue> table(std::string_view name) const;
+    [[nodiscard]] Table table(std::string_view name) const;
     [[nodiscard]] std::span<const std::byte> view(std::uint32_t index) const;
     [[nodiscard]] Accessor accessor(std::uint32_t index) const;
     [[nodiscard]] std::vector<double> elements(std::uint32_t index, int components);
-    void spend(JsonValue at, std::uint64_t bytes);
-
     std::string folder_;
     JsonDocument json_;
     std::span<const std::byte> glb_buffer_;
     bool has_glb_buffer_ = false;
     std::uint64_t budget_ = 0;  ///< bytes that decoded accessors may still take
-    std::vector<JsonValue> buffers_, views_, accessors_, meshes_, nodes_, materials_, scenes_;
+    Table buffers_, views_, accessors_, meshes_, nodes_, materials_, scenes_;
     std::vector<std::shared_ptr<const std::vector<std::byte>>> buffer_bytes_;
     std::vector<std::uint32_t> parents_;
 };

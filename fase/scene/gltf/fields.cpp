@@ -130,6 +130,16 @@ std::optional<Quatd> rotation_in(JsonValue object, std::string_view key) {
     return std::abs(squared - 1) <= 1e-6 ? q : normalized(q);
 }
 
+Table::Table(const JsonDocument& document, JsonValue object, std::string_view name) : document_(&document) {
+    const std::optional<JsonValue> array = member(object, name, JsonKind::Array);
+    if (!array) return;
+    indices_.reserve(array->size());
+    array->for_each_element([&](JsonValue value) {
+        if (!value.is(JsonKind::Object)) refuse_kind(value, "an object");
+        indices_.push_back(value.index());
+    });
+}
+
 void Notes::unknown_members(JsonValue object, std::string_view name, std::initializer_list<std::string_view> known) {
     object.for_each_member([&](std::string_view key, JsonValue) {
         const bool always = key == "extras" || key == "extensions" || key == "name";

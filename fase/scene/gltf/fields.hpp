@@ -50,6 +50,21 @@ std::optional<Vec3d> vec3_in(JsonValue object, std::string_view key);
 /// A quaternion x, y, z, w of length 1 within 1e-2; kept as it is when within 1e-6, else normalised.
 std::optional<Quatd> rotation_in(JsonValue object, std::string_view key);
 
+/// The elements of one of the file's arrays of objects, 4 bytes each. Empty when the file has no such array.
+class Table {
+public:
+    Table() = default;
+    /// object[name], whose elements must be objects.
+    Table(const JsonDocument& document, JsonValue object, std::string_view name);
+    [[nodiscard]] std::size_t size() const { return indices_.size(); }
+    [[nodiscard]] bool empty() const { return indices_.empty(); }
+    [[nodiscard]] JsonValue operator[](std::size_t i) const { return document_->at(indices_[i]); }
+
+private:
+    const JsonDocument* document_ = nullptr;
+    std::vector<std::uint32_t> indices_;
+};
+
 /// What was not understood, each text once, with how often it came.
 class Notes {
 public:

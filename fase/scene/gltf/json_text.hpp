@@ -60,6 +60,11 @@ public:
         const T values[]{q.x, q.y, q.z, q.w};
         return numbers(std::span<const T>(values));
     }
+    /// A value that was written elsewhere.
+    JsonText& value(const JsonText& other) {
+        all_finite_ = all_finite_ && other.all_finite_;
+        return raw(other.text_);
+    }
     /// A value that is JSON already.
     JsonText& raw_json(std::string_view json) { return raw(json); }
     [[nodiscard]] const std::string& str() const { return text_; }

@@ -11,22 +11,12 @@
 namespace fase::scene::gltf {
 namespace {
 
-std::vector<JsonValue> list_in(std::optional<JsonValue> object, std::string_view key) {
-    std::vector<JsonValue> all;
-    const std::optional<JsonValue> array = object ? member(*object, key, JsonKind::Array) : std::nullopt;
-    if (!array) return all;
-    all.reserve(array->size());
-    array->for_each_element([&](JsonValue value) {
-        if (!value.is(JsonKind::Object)) refuse(value, fmt::format("found {}, need an object", name_of(value.kind())));
-        all.push_back(value);
-    });
-    return all;
-}
-
 /// What a joint's limits leave free, as people call it.
-std::string joint_type(JsonValue joint, Notes& notes) {
+std::string joint_type(const JsonDocument& document, JsonValue joint, Notes& notes) {
     std::array<bool, 3> linear{}, angular{};
-    for (const JsonValue limit : list_in(joint, "limits")) {
+    const Table limits(document, joint, "limits");
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const JsonValue limit = limits[i];
         const bool locks = number_in(limit, "min", -1) == 0 && number_in(limit, "max", 1) == 0;
         for (const bool turning : {false, true}) {
             const std::optional<JsonValue> axes =
@@ -38,7 +28,7 @@ std::string joint_type(JsonValue joint, Notes& notes) {
             });
         }
     }
-    if (!list_in(joint, "drives").empty()) notes.add("joint drives are not simulated yet");
+    if (!Table(document, joint, "drives").empty()) notes.add("joint drives are not simulated yet");
     const auto moves = 3 - std::count(linear.begin(), linear.end(), true),
                turns = 3 - std::count(angular.begin(), angular.end(), true);
     if (moves == 0 && turns == 0) return "fixed";
@@ -65,12 +55,13 @@ CombineMode combine_mode(JsonValue material, std::string_view key, Notes& notes)
 
 }  // namespace
 
-Physics::Physics(const Document& document, Notes& notes) : document_(document), notes_(notes) {
-    read_shapes("KHR_implicit_shapes", "shapes", ShapeDialect::KhrImplicit, khr_shapes_);
-    read_shapes("KHR_collision_shapes", "shapes", ShapeDialect::KhrCollision, khr_old_shapes_);
-    read_shapes("OMI_physics_shape", "shapes", ShapeDialect::Omi, omi_shapes_);
-    read_shapes("OMI_collider", "colliders", ShapeDialect::OmiCollider, omi_colliders_);
-    if (khr_shapes_.empty()) khr_shapes_ = khr_old_shapes_;
+Physics::Physics(Document& document, Notes& notes)
+    : document_(document),
+      notes_(notes),
+      khr_shapes_(document, notes, "KHR_implicit_shapes", "shapes", ShapeDialect::KhrImplicit),
+      khr_old_shapes_(document, notes, "KHR_collision_shapes", "shapes", ShapeDialect::KhrCollision),
+      omi_shapes_(document, notes, "OMI_physics_shape", "shapes", ShapeDialect::Omi),
+      omi_colliders_(document, notes, "OMI_collider", "colliders", ShapeDialect::OmiCollider) {
     read_resources("KHR_physics_rigid_bodies", khr_);
     read_resources("KHR_rigid_bodies", khr_old_);
     read_resources("OMI_physics_body", omi_);
@@ -79,22 +70,14 @@ Physics::Physics(const Document& document, Notes& notes) : document_(document), 
     omi_joints_ = joints.joints;
 }
 
-void Physics::read_shapes(std::string_view extension_name, std::string_view list, ShapeDialect dialect,
-                          std::vector<ShapeSource>& out) {
-    const std::optional<JsonValue> body = extension(document_.root(), extension_name);
-    if (!body) return;
-    notes_.unknown_members(*body, extension_name, {list});
-    for (const JsonValue json : list_in(body, list)) out.push_back(read_shape(json, dialect, document_, notes_));
-}
-
 void Physics::read_resources(std::string_view extension_name, Resources& out) {
     const std::optional<JsonValue> body = extension(document_.root(), extension_name);
     if (!body) return;
     notes_.unknown_members(*body, extension_name,
                            {"physicsMaterials", "collisionFilters", "physicsJoints", "physicsJointLimits"});
-    out.materials = list_in(body, "physicsMaterials");
-    out.filters = list_in(body, "collisionFilters");
-    out.joints = list_in(body, "physicsJoints");
+    out.materials = Table(document_.json(), *body, "physicsMaterials");
+    out.filters = Table(document_.json(), *body, "collisionFilters");
+    out.joints = Table(document_.json(), *body, "physicsJoints");
 }
 
 void Physics::common_motion(JsonValue json, Motion& motion) {
@@ -179,13 +162,14 @@ std::optional<Motion> Physics::motion(std::uint32_t node) {
     return omi_motion(*motion, type.value_or("dynamic"));
 }
 
-const ShapeSource* Physics::khr_geometry(JsonValue geometry, const std::vector<ShapeSource>& shapes) {
+const ShapeSource* Physics::khr_geometry(JsonValue geometry, ShapeList& shapes) {
     notes_.unknown_members(geometry, "geometry's", {"shape", "node", "mesh", "convexHull"});
     const std::optional<std::uint32_t> shape = index_in(geometry, "shape", shapes.size(), "shapes");
     const std::optional<std::uint32_t> node = index_in(geometry, "node", document_.nodes().size(), "nodes");
     if (shape && node) refuse(geometry, "found both a shape and a node, need one of them");
     const bool convex = flag_in(geometry, "convexHull", false);
-    if (shape && (!shapes[*shape].mesh || shapes[*shape].convex || !convex)) return &shapes[*shape];
+    const ShapeSource* const named = shape ? &shapes.at(document_, *shape) : nullptr;
+    if (named != nullptr && (!named->mesh || named->convex || !convex)) return named;
     if (node) {
         ShapeSource& source = node_shapes_[{*node, convex}];
         source.json = geometry;
@@ -195,7 +179,7 @@ const ShapeSource* Physics::khr_geometry(JsonValue geometry, const std::vector<S
     }
     // An earlier draft named the mesh itself; keys past the nodes' cannot meet theirs.
     const std::optional<std::uint32_t> mesh =
-        shape ? shapes[*shape].mesh : index_in(geometry, "mesh", document_.meshes().size(), "meshes");
+        named != nullptr ? named->mesh : index_in(geometry, "mesh", document_.meshes().size(), "meshes");
     if (mesh) {
         ShapeSource& source = node_shapes_[{static_cast<std::uint32_t>(document_.nodes().size()) + *mesh, convex}];
         source.json = geometry;
@@ -206,8 +190,8 @@ const ShapeSource* Physics::khr_geometry(JsonValue geometry, const std::vector<S
     refuse(geometry, "found neither a shape nor a node, need one of them");
 }
 
-void Physics::add_uses(JsonValue body, std::string_view key, bool sensor, const std::vector<ShapeSource>& shapes,
-                       const Resources& resources, std::vector<ColliderUse>& out) {
+void Physics::add_uses(JsonValue body, std::string_view key, bool sensor, ShapeList& shapes, const Resources& resources,
+                       std::vector<ColliderUse>& out) {
     const std::optional<JsonValue> json = member(body, key, JsonKind::Object);
     if (!json) return;
     notes_.unknown_members(*json, fmt::format("{}'s", key),
@@ -224,7 +208,7 @@ void Physics::add_uses(JsonValue body, std::string_view key, bool sensor, const 
     if (geometry)
         use.source = khr_geometry(*geometry, shapes);
     else if (const auto shape = index_in(*json, "shape", shapes.size(), "shapes"))
-        use.source = &shapes[*shape];
+        use.source = &shapes.at(document_, *shape);
     use.material = material(*json, resources);
     use.filter = filter(*json, resources);
     if (use.source != nullptr) out.push_back(use);
@@ -233,25 +217,26 @@ void Physics::add_uses(JsonValue body, std::string_view key, bool sensor, const 
 std::vector<ColliderUse> Physics::colliders(std::uint32_t node) {
     std::vector<ColliderUse> uses;
     const JsonValue json = document_.nodes()[node];
-    const auto add = [&](std::string_view name, const std::vector<ShapeSource>& shapes, const Resources& resources) {
+    const auto add = [&](std::string_view name, ShapeList& shapes, const Resources& resources) {
         const std::optional<JsonValue> body = extension(json, name);
         if (!body) return;
         add_uses(*body, "collider", false, shapes, resources, uses);
         add_uses(*body, "trigger", true, shapes, resources, uses);
     };
-    add("KHR_physics_rigid_bodies", khr_shapes_, khr_);
-    add("KHR_rigid_bodies", khr_shapes_, khr_old_);
+    ShapeList& khr_shapes = khr_shapes_.size() > 0 ? khr_shapes_ : khr_old_shapes_;
+    add("KHR_physics_rigid_bodies", khr_shapes, khr_);
+    add("KHR_rigid_bodies", khr_shapes, khr_old_);
     add("OMI_physics_body", omi_shapes_, omi_);
     for (const bool old : {false, true}) {
         // Forerunners that put a shape straight on a node.
         const std::optional<JsonValue> direct = extension(json, old ? "OMI_collider" : "KHR_collision_shapes");
         if (!direct) continue;
-        const std::vector<ShapeSource>& shapes = old ? omi_colliders_ : khr_old_shapes_;
+        ShapeList& shapes = old ? omi_colliders_ : khr_old_shapes_;
         const auto shape = index_in(*direct, old ? "collider" : "shape", shapes.size(), old ? "colliders" : "shapes");
         if (!shape) continue;
         ColliderUse use;
         use.json = *direct;
-        use.source = &shapes[*shape];
+        use.source = &shapes.at(document_, *shape);
         use.sensor = old && flag_in(use.source->json, "isTrigger", false);
         uses.push_back(use);
     }
@@ -336,8 +321,7 @@ pairs::CollisionFilter Physics::filter(JsonValue use, const Resources& resources
 
 std::optional<JointUse> Physics::joint(std::uint32_t node) {
     const JsonValue json = document_.nodes()[node];
-    const auto read = [&](std::optional<JsonValue> use,
-                          const std::vector<JsonValue>& joints) -> std::optional<JointUse> {
+    const auto read = [&](std::optional<JsonValue> use, const Table& joints) -> std::optional<JointUse> {
         if (!use) return std::nullopt;
         JointUse joint;
         const auto other = index_in(*use, "connectedNode", document_.nodes().size(), "nodes");
@@ -345,7 +329,7 @@ std::optional<JointUse> Physics::joint(std::uint32_t node) {
         if (!other || !kind) refuse(*use, "found a joint without connectedNode or joint, need both");
         joint.other = *other;
         joint.collide = flag_in(*use, "enableCollision", false);
-        joint.type = joint_type(joints[*kind], notes_);
+        joint.type = joint_type(document_.json(), joints[*kind], notes_);
         notes_.add(fmt::format("joints ({}) are not simulated yet", joint.type));
         return joint;
     };

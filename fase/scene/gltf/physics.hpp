@@ -42,7 +42,7 @@ struct JointUse {
 /// The physics resources of a document, and what each node makes of them. Everything is checked when it is asked for.
 class Physics {
 public:
-    Physics(const Document& document, Notes& notes);
+    Physics(Document& document, Notes& notes);
     [[nodiscard]] std::optional<Motion> motion(std::uint32_t node);
     [[nodiscard]] std::vector<ColliderUse> colliders(std::uint32_t node);
     [[nodiscard]] std::optional<JointUse> joint(std::uint32_t node);
@@ -51,27 +51,25 @@ public:
 
 private:
     struct Resources {
-        std::vector<JsonValue> materials, filters, joints;
+        Table materials, filters, joints;
     };
-    void read_shapes(std::string_view extension_name, std::string_view list, ShapeDialect dialect,
-                     std::vector<ShapeSource>& out);
     void read_resources(std::string_view extension_name, Resources& out);
     [[nodiscard]] Motion khr_motion(JsonValue json);
     [[nodiscard]] Motion omi_motion(JsonValue json, std::string_view type);
     void common_motion(JsonValue json, Motion& motion);
-    [[nodiscard]] const ShapeSource* khr_geometry(JsonValue geometry, const std::vector<ShapeSource>& shapes);
+    [[nodiscard]] const ShapeSource* khr_geometry(JsonValue geometry, ShapeList& shapes);
     [[nodiscard]] Material material(JsonValue use, const Resources& resources);
     [[nodiscard]] pairs::CollisionFilter filter(JsonValue use, const Resources& resources);
     [[nodiscard]] std::uint64_t system_bit(std::string_view name);
-    void add_uses(JsonValue body, std::string_view key, bool sensor, const std::vector<ShapeSource>& shapes,
-                  const Resources& resources, std::vector<ColliderUse>& out);
+    void add_uses(JsonValue body, std::string_view key, bool sensor, ShapeList& shapes, const Resources& resources,
+                  std::vector<ColliderUse>& out);
 
-    const Document& document_;
+    Document& document_;
     Notes& notes_;
-    std::vector<ShapeSource> khr_shapes_, khr_old_shapes_, omi_shapes_, omi_colliders_;
+    ShapeList khr_shapes_, khr_old_shapes_, omi_shapes_, omi_colliders_;
     std::map<std::pair<std::uint32_t, bool>, ShapeSource> node_shapes_;  ///< by node and convexity
     Resources khr_, khr_old_, omi_;
-    std::vector<JsonValue> omi_joints_;
+    Table omi_joints_;
     std::map<std::string, std::uint64_t, std::less<>> systems_;
     std::uint64_t systems_taken_ = 1;
 };

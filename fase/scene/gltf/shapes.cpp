@@ -157,4 +157,24 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
     return source;
 }
 
+ShapeList::ShapeList(Document& document, Notes& notes, std::string_view extension_name, std::string_view list,
+                     ShapeDialect dialect)
+    : dialect_(dialect) {
+    const std::optional<JsonValue> body = extension(document.root(), extension_name);
+    if (!body) return;
+    notes.unknown_members(*body, extension_name, {list});
+    table_ = Table(document.json(), *body, list);
+    for (std::size_t i = 0; i < table_.size(); ++i) static_cast<void>(read_shape(table_[i], dialect, document, notes));
+}
+
+const ShapeSource& ShapeList::at(Document& document, std::uint32_t index) {
+    const auto [at, fresh] = kept_.try_emplace(index);
+    if (fresh) {
+        Notes noted_already;
+        at->second = read_shape(table_[index], dialect_, document, noted_already);
+        if (at->second.shape) document.spend(at->second.json, *at->second.shape);
+    }
+    return at->second;
+}
+
 }  // namespace fase::scene::gltf

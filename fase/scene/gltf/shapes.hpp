@@ -31,4 +31,21 @@ enum class ShapeDialect {
 /// Neither `shape` nor `mesh`: noted, and to be left out.
 ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& document, Notes& notes);
 
+/// An extension's list of shapes: each is checked at once, but kept only when it is asked for.
+class ShapeList {
+public:
+    ShapeList() = default;
+    /// root.extensions[extension][list], when it is there.
+    ShapeList(Document& document, Notes& notes, std::string_view extension, std::string_view list,
+              ShapeDialect dialect);
+    [[nodiscard]] std::size_t size() const { return table_.size(); }
+    /// Stays where it is as long as the list does.
+    const ShapeSource& at(Document& document, std::uint32_t index);
+
+private:
+    Table table_;
+    ShapeDialect dialect_ = ShapeDialect::KhrImplicit;
+    std::map<std::uint32_t, ShapeSource> kept_;
+};
+
 }  // namespace fase::scene::gltf

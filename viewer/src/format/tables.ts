@@ -5,162 +5,186 @@ import { Reader } from "./bytes";
 const mostRows = 1 << 21;
 
 export function decodeHead(raw: Uint8Array): Tables {
-    const read = new Reader(raw, "HEAD");
-    const title = read.text();
-    const program = read.text();
-    const timeStep = read.f32();
-    const gravity = read.vec3();
-    const quantaPerMetre = read.f64();
-    if (!(quantaPerMetre > 0 && quantaPerMetre < Infinity)) read.fail(`found ${quantaPerMetre} quanta per metre, need above 0`);
-    const flags = read.u32();
-    const texts = () => Array.from({ length: read.count(1) }, () => read.text());
-    const stageNames = texts();
-    const counterNames = texts();
-    return {
-        title, program, timeStep, gravity, quantaPerMetre, hasContacts: (flags & 1) !== 0, stageNames, counterNames,
-        shapes: [], meshes: [], bodies: [], colliders: [], visuals: [],
-    };
+  const read = new Reader(raw, "HEAD");
+  const title = read.text();
+  const program = read.text();
+  const timeStep = read.f32();
+  const gravity = read.vec3();
+  const quantaPerMetre = read.f64();
+  if (!(quantaPerMetre > 0 && quantaPerMetre < Infinity))
+    read.fail(`found ${quantaPerMetre} quanta per metre, need above 0`);
+  const flags = read.u32();
+  const texts = () => Array.from({ length: read.count(1) }, () => read.text());
+  const stageNames = texts();
+  const counterNames = texts();
+  return {
+    title,
+    program,
+    timeStep,
+    gravity,
+    quantaPerMetre,
+    hasContacts: (flags & 1) !== 0,
+    stageNames,
+    counterNames,
+    shapes: [],
+    meshes: [],
+    bodies: [],
+    colliders: [],
+    visuals: [],
+  };
 }
 
 /** Adds the rows of one chunk to the tables; a type that is not a table's is left alone. */
 export function addRows(tables: Tables, type: string, raw: Uint8Array): void {
-    const rows = readers[type];
-    if (!rows) return;
-    const read = new Reader(raw, type);
-    const count = read.u32();
-    const table = rows.of(tables);
-    if (count * rows.leastBytes > read.left) read.fail(`found ${count} rows, but only ${read.left} bytes follow`);
-    if (table && table.length + count > mostRows) read.fail(`found more than ${mostRows} rows`);
-    for (let i = 0; i < count; ++i) rows.add(tables, read);
-    if (read.left > 0) read.fail(`found ${read.left} bytes after the last row`);
+  const rows = readers[type];
+  if (!rows) return;
+  const read = new Reader(raw, type);
+  const count = read.u32();
+  const table = rows.of(tables);
+  if (count * rows.leastBytes > read.left) read.fail(`found ${count} rows, but only ${read.left} bytes follow`);
+  if (table && table.length + count > mostRows) read.fail(`found more than ${mostRows} rows`);
+  for (let i = 0; i < count; ++i) rows.add(tables, read);
+  if (read.left > 0) read.fail(`found ${read.left} bytes after the last row`);
 }
 
 interface RowReader {
-    leastBytes: number;
-    of(tables: Tables): unknown[] | null;
-    add(tables: Tables, read: Reader): void;
+  leastBytes: number;
+  of(tables: Tables): unknown[] | null;
+  add(tables: Tables, read: Reader): void;
 }
 
 const readers: Record<string, RowReader> = {
-    SHAP: { leastBytes: 1, of: (t) => t.shapes, add: (t, read) => t.shapes.push(readShape(read)) },
-    MESH: {
-        leastBytes: 9,
-        of: (t) => t.meshes,
-        add: (t, read) => {
-            const vertices = read.u32();
-            const triangles = read.u32();
-            const flags = read.u8();
-            t.meshes.push(readTriangles(read, vertices, triangles, (flags & 1) !== 0));
-        },
+  SHAP: { leastBytes: 1, of: (t) => t.shapes, add: (t, read) => t.shapes.push(readShape(read)) },
+  MESH: {
+    leastBytes: 9,
+    of: (t) => t.meshes,
+    add: (t, read) => {
+      const vertices = read.u32();
+      const triangles = read.u32();
+      const flags = read.u8();
+      t.meshes.push(readTriangles(read, vertices, triangles, (flags & 1) !== 0));
     },
-    BODY: {
-        leastBytes: 25,
-        of: (t) => t.bodies,
-        add: (t, read) => {
-            const index = read.u32();
-            const generation = read.u16();
-            const kind = read.u8();
-            if (kind > 2) read.fail(`found body kind ${kind}, need 0 to 2`);
-            read.u8();
-            const user = read.u64();
-            const mass = read.f32();
-            const colour = readColour(read);
-            const name = read.text();
-            t.bodies.push({ index, generation, kind: kind as BodyKind, user, mass, colour, name, colliders: [], visuals: [] });
-        },
+  },
+  BODY: {
+    leastBytes: 25,
+    of: (t) => t.bodies,
+    add: (t, read) => {
+      const index = read.u32();
+      const generation = read.u16();
+      const kind = read.u8();
+      if (kind > 2) read.fail(`found body kind ${kind}, need 0 to 2`);
+      read.u8();
+      const user = read.u64();
+      const mass = read.f32();
+      const colour = readColour(read);
+      const name = read.text();
+      t.bodies.push({
+        index,
+        generation,
+        kind: kind as BodyKind,
+        user,
+        mass,
+        colour,
+        name,
+        colliders: [],
+        visuals: [],
+      });
     },
-    COLL: {
-        leastBytes: 52,
-        of: (t) => t.colliders,
-        add: (t, read) => {
-            read.take(6); // its id in the world
-            const flags = read.u8();
-            read.u8();
-            const body = readRow(read, t.bodies, "body");
-            const shape = readRow(read, t.shapes, "shape");
-            const from = read.count64();
-            const pose = readPose(read);
-            t.bodies[body].colliders.push(t.colliders.length);
-            t.colliders.push({ body, shape, pose, sensor: (flags & 1) !== 0, from, to: Infinity });
-        },
+  },
+  COLL: {
+    leastBytes: 52,
+    of: (t) => t.colliders,
+    add: (t, read) => {
+      read.take(6); // its id in the world
+      const flags = read.u8();
+      read.u8();
+      const body = readRow(read, t.bodies, "body");
+      const shape = readRow(read, t.shapes, "shape");
+      const from = read.count64();
+      const pose = readPose(read);
+      t.bodies[body].colliders.push(t.colliders.length);
+      t.colliders.push({ body, shape, pose, sensor: (flags & 1) !== 0, from, to: Infinity });
     },
-    CEND: {
-        leastBytes: 12,
-        of: () => null,
-        add: (t, read) => {
-            const collider = readRow(read, t.colliders, "collider");
-            t.colliders[collider].to = read.count64();
-        },
+  },
+  CEND: {
+    leastBytes: 12,
+    of: () => null,
+    add: (t, read) => {
+      const collider = readRow(read, t.colliders, "collider");
+      t.colliders[collider].to = read.count64();
     },
-    VISU: {
-        leastBytes: 40,
-        of: (t) => t.visuals,
-        add: (t, read) => {
-            const body = readRow(read, t.bodies, "body");
-            const mesh = readRow(read, t.meshes, "mesh");
-            const pose = readPose(read);
-            const colour = readColour(read);
-            t.bodies[body].visuals.push(t.visuals.length);
-            t.visuals.push({ body, mesh, pose, colour });
-        },
+  },
+  VISU: {
+    leastBytes: 40,
+    of: (t) => t.visuals,
+    add: (t, read) => {
+      const body = readRow(read, t.bodies, "body");
+      const mesh = readRow(read, t.meshes, "mesh");
+      const pose = readPose(read);
+      const colour = readColour(read);
+      t.bodies[body].visuals.push(t.visuals.length);
+      t.visuals.push({ body, mesh, pose, colour });
     },
+  },
 };
 
 function readRow(read: Reader, table: unknown[], what: string): number {
-    const row = read.u32();
-    if (row >= table.length) read.fail(`found ${what} row ${row}, need below ${table.length}`);
-    return row;
+  const row = read.u32();
+  if (row >= table.length) read.fail(`found ${what} row ${row}, need below ${table.length}`);
+  return row;
 }
 
 function readColour(read: Reader): number | null {
-    const [red, green, blue, alpha] = read.octets(4);
-    return alpha === 0 ? null : (red << 16) | (green << 8) | blue;
+  const [red, green, blue, alpha] = read.octets(4);
+  return alpha === 0 ? null : (red << 16) | (green << 8) | blue;
 }
 
 function readPose(read: Reader): LocalPose {
-    const position: Vec3 = read.vec3();
-    const rotation: Quat = [read.f32(), read.f32(), read.f32(), read.f32()];
-    const length = Math.hypot(...rotation);
-    if (![...position, length].every(Number.isFinite) || length < 0.5) read.fail("found a pose that is not finite or has no rotation");
-    return { position, rotation: rotation.map((x) => x / length) as Quat };
+  const position: Vec3 = read.vec3();
+  const rotation: Quat = [read.f32(), read.f32(), read.f32(), read.f32()];
+  const length = Math.hypot(...rotation);
+  if (![...position, length].every(Number.isFinite) || length < 0.5)
+    read.fail("found a pose that is not finite or has no rotation");
+  return { position, rotation: rotation.map((x) => x / length) as Quat };
 }
 
 function readShape(read: Reader): Shape {
-    const kind = read.u8();
-    switch (kind) {
-        case 0:
-            return { kind: "sphere", radius: read.size() };
-        case 1:
-            return { kind: "box", half: [read.size(), read.size(), read.size()] };
-        case 2: {
-            const radius = read.size();
-            const halfLength = read.f32();
-            if (!(halfLength >= 0 && halfLength < Infinity)) read.fail(`found half length ${halfLength}, need 0 or more`);
-            return { kind: "capsule", radius, halfLength };
-        }
-        case 3:
-            return { kind: "cylinder", radius: read.size(), halfHeight: read.size() };
-        case 4:
-        case 6: {
-            const vertices = read.u32();
-            const triangles = read.u32();
-            const mesh = readTriangles(read, vertices, triangles, false);
-            return { kind: kind === 4 ? "convex hull" : "mesh", mesh };
-        }
-        case 5:
-            return { kind: "half-space" };
-        default:
-            return read.fail(`found shape kind ${kind}, need 0 to 6`);
+  const kind = read.u8();
+  switch (kind) {
+    case 0:
+      return { kind: "sphere", radius: read.size() };
+    case 1:
+      return { kind: "box", half: [read.size(), read.size(), read.size()] };
+    case 2: {
+      const radius = read.size();
+      const halfLength = read.f32();
+      if (!(halfLength >= 0 && halfLength < Infinity)) read.fail(`found half length ${halfLength}, need 0 or more`);
+      return { kind: "capsule", radius, halfLength };
     }
+    case 3:
+      return { kind: "cylinder", radius: read.size(), halfHeight: read.size() };
+    case 4:
+    case 6: {
+      const vertices = read.u32();
+      const triangles = read.u32();
+      const mesh = readTriangles(read, vertices, triangles, false);
+      return { kind: kind === 4 ? "convex hull" : "mesh", mesh };
+    }
+    case 5:
+      return { kind: "half-space" };
+    default:
+      return read.fail(`found shape kind ${kind}, need 0 to 6`);
+  }
 }
 
 function readTriangles(read: Reader, vertexCount: number, triangleCount: number, hasNormals: boolean): Triangles {
-    const bytes = vertexCount * (hasNormals ? 24 : 12) + triangleCount * 12;
-    if (bytes > read.left) read.fail(`found a mesh of ${bytes} bytes, but only ${read.left} follow`);
-    const vertices = read.floats(3 * vertexCount);
-    const normals = hasNormals ? read.floats(3 * vertexCount) : null;
-    const triangles = read.words(3 * triangleCount);
-    if (!vertices.every(Number.isFinite)) read.fail("found a vertex that is not finite");
-    if (triangles.some((vertex) => vertex >= vertexCount)) read.fail(`found a triangle beyond the ${vertexCount} vertices`);
-    return { vertices, normals, triangles };
+  const bytes = vertexCount * (hasNormals ? 24 : 12) + triangleCount * 12;
+  if (bytes > read.left) read.fail(`found a mesh of ${bytes} bytes, but only ${read.left} follow`);
+  const vertices = read.floats(3 * vertexCount);
+  const normals = hasNormals ? read.floats(3 * vertexCount) : null;
+  const triangles = read.words(3 * triangleCount);
+  if (!vertices.every(Number.isFinite)) read.fail("found a vertex that is not finite");
+  if (triangles.some((vertex) => vertex >= vertexCount))
+    read.fail(`found a triangle beyond the ${vertexCount} vertices`);
+  return { vertices, normals, triangles };
 }

@@ -7,102 +7,102 @@ import type { Form, Part } from "./parts";
 
 /** Slots are numbered in the order of the parts that the batch was made from. */
 export interface Batch {
-    readonly object: Mesh;
-    /** sixteen numbers by column; all 0 hides the part */
-    setMatrix(slot: number, matrix: Float32Array): void;
-    /** linear light */
-    setColour(slot: number, colour: Float32Array): void;
-    /** hands what was set to the graphics card */
-    flush(): void;
+  readonly object: Mesh;
+  /** sixteen numbers by column; all 0 hides the part */
+  setMatrix(slot: number, matrix: Float32Array): void;
+  /** linear light */
+  setColour(slot: number, colour: Float32Array): void;
+  /** hands what was set to the graphics card */
+  flush(): void;
 }
 
 class InstancedBatch implements Batch {
-    readonly object: InstancedMesh;
-    private readonly matrices: Float32Array;
-    private readonly colours: Float32Array;
-    private moved = false;
-    private coloured = false;
+  readonly object: InstancedMesh;
+  private readonly matrices: Float32Array;
+  private readonly colours: Float32Array;
+  private moved = false;
+  private coloured = false;
 
-    constructor(form: Exclude<Form, "mesh">, sensor: boolean, count: number) {
-        this.object = new InstancedMesh(unitGeometry(form, count), makeMaterial(form, sensor), count);
-        this.matrices = this.object.instanceMatrix.array as Float32Array;
-        this.matrices.fill(0);
-        this.colours = new Float32Array(3 * count).fill(1);
-        this.object.instanceColor = new InstancedBufferAttribute(this.colours, 3);
-    }
-    setMatrix(slot: number, matrix: Float32Array): void {
-        this.matrices.set(matrix, 16 * slot);
-        this.moved = true;
-    }
-    setColour(slot: number, colour: Float32Array): void {
-        this.colours.set(colour, 3 * slot);
-        this.coloured = true;
-    }
-    flush(): void {
-        if (this.moved) this.object.instanceMatrix.needsUpdate = true;
-        if (this.coloured && this.object.instanceColor) this.object.instanceColor.needsUpdate = true;
-        this.moved = this.coloured = false;
-    }
+  constructor(form: Exclude<Form, "mesh">, sensor: boolean, count: number) {
+    this.object = new InstancedMesh(unitGeometry(form, count), makeMaterial(form, sensor), count);
+    this.matrices = this.object.instanceMatrix.array as Float32Array;
+    this.matrices.fill(0);
+    this.colours = new Float32Array(3 * count).fill(1);
+    this.object.instanceColor = new InstancedBufferAttribute(this.colours, 3);
+  }
+  setMatrix(slot: number, matrix: Float32Array): void {
+    this.matrices.set(matrix, 16 * slot);
+    this.moved = true;
+  }
+  setColour(slot: number, colour: Float32Array): void {
+    this.colours.set(colour, 3 * slot);
+    this.coloured = true;
+  }
+  flush(): void {
+    if (this.moved) this.object.instanceMatrix.needsUpdate = true;
+    if (this.coloured && this.object.instanceColor) this.object.instanceColor.needsUpdate = true;
+    this.moved = this.coloured = false;
+  }
 }
 
 class MeshBatch implements Batch {
-    readonly object: BatchedMesh;
-    private readonly matrix = new Matrix4();
-    private readonly colour = new Color();
-    private readonly ids: number[];
+  readonly object: BatchedMesh;
+  private readonly matrix = new Matrix4();
+  private readonly colour = new Color();
+  private readonly ids: number[];
 
-    constructor(parts: Part[], sensor: boolean) {
-        const meshes = new Map<Triangles, ReturnType<typeof meshGeometry>>();
-        for (const { mesh } of parts) if (mesh && !meshes.has(mesh)) meshes.set(mesh, meshGeometry(mesh));
-        let vertices = 0;
-        let indices = 0;
-        for (const geometry of meshes.values()) {
-            vertices += geometry.getAttribute("position").count;
-            indices += geometry.index?.count ?? 0;
-        }
-        this.object = new BatchedMesh(parts.length, vertices, indices, makeMaterial("mesh", sensor));
-        this.object.perObjectFrustumCulled = false;
-        this.object.sortObjects = false;
-        const geometryIds = new Map<Triangles, number>();
-        for (const [mesh, geometry] of meshes) {
-            geometryIds.set(mesh, this.object.addGeometry(geometry));
-            geometry.dispose();
-        }
-        this.ids = parts.map(({ mesh }) => this.object.addInstance(geometryIds.get(mesh as Triangles) as number));
-        for (const id of this.ids) this.object.setVisibleAt(id, false);
+  constructor(parts: Part[], sensor: boolean) {
+    const meshes = new Map<Triangles, ReturnType<typeof meshGeometry>>();
+    for (const { mesh } of parts) if (mesh && !meshes.has(mesh)) meshes.set(mesh, meshGeometry(mesh));
+    let vertices = 0;
+    let indices = 0;
+    for (const geometry of meshes.values()) {
+      vertices += geometry.getAttribute("position").count;
+      indices += geometry.index?.count ?? 0;
     }
-    setMatrix(slot: number, matrix: Float32Array): void {
-        const visible = matrix[15] !== 0;
-        this.object.setVisibleAt(this.ids[slot], visible);
-        if (visible) this.object.setMatrixAt(this.ids[slot], this.matrix.fromArray(matrix));
+    this.object = new BatchedMesh(parts.length, vertices, indices, makeMaterial("mesh", sensor));
+    this.object.perObjectFrustumCulled = false;
+    this.object.sortObjects = false;
+    const geometryIds = new Map<Triangles, number>();
+    for (const [mesh, geometry] of meshes) {
+      geometryIds.set(mesh, this.object.addGeometry(geometry));
+      geometry.dispose();
     }
-    setColour(slot: number, colour: Float32Array): void {
-        this.object.setColorAt(this.ids[slot], this.colour.setRGB(colour[0], colour[1], colour[2]));
-    }
-    flush(): void {}
+    this.ids = parts.map(({ mesh }) => this.object.addInstance(geometryIds.get(mesh as Triangles) as number));
+    for (const id of this.ids) this.object.setVisibleAt(id, false);
+  }
+  setMatrix(slot: number, matrix: Float32Array): void {
+    const visible = matrix[15] !== 0;
+    this.object.setVisibleAt(this.ids[slot], visible);
+    if (visible) this.object.setMatrixAt(this.ids[slot], this.matrix.fromArray(matrix));
+  }
+  setColour(slot: number, colour: Float32Array): void {
+    this.object.setColorAt(this.ids[slot], this.colour.setRGB(colour[0], colour[1], colour[2]));
+  }
+  flush(): void {}
 }
 
 /** Sorts parts into batches: the batch and slot of each part, in their order. */
 export function makeBatches(parts: Part[]): { batches: Batch[]; places: { batch: Batch; slot: number }[] } {
-    const groups = new Map<string, Part[]>();
-    const slots = parts.map((part) => {
-        const key = `${part.form} ${part.sensor}`;
-        const group = groups.get(key) ?? [];
-        groups.set(key, group);
-        return { key, slot: group.push(part) - 1 };
-    });
-    const made = new Map<string, Batch>();
-    for (const [key, group] of groups) {
-        const { form, sensor } = group[0];
-        const batch = form === "mesh" ? new MeshBatch(group, sensor) : new InstancedBatch(form, sensor, group.length);
-        batch.object.castShadow = !sensor;
-        batch.object.receiveShadow = !sensor;
-        batch.object.frustumCulled = false;
-        if (sensor) batch.object.renderOrder = 2;
-        made.set(key, batch);
-    }
-    return {
-        batches: [...made.values()],
-        places: slots.map(({ key, slot }) => ({ batch: made.get(key) as Batch, slot })),
-    };
+  const groups = new Map<string, Part[]>();
+  const slots = parts.map((part) => {
+    const key = `${part.form} ${part.sensor}`;
+    const group = groups.get(key) ?? [];
+    groups.set(key, group);
+    return { key, slot: group.push(part) - 1 };
+  });
+  const made = new Map<string, Batch>();
+  for (const [key, group] of groups) {
+    const { form, sensor } = group[0];
+    const batch = form === "mesh" ? new MeshBatch(group, sensor) : new InstancedBatch(form, sensor, group.length);
+    batch.object.castShadow = !sensor;
+    batch.object.receiveShadow = !sensor;
+    batch.object.frustumCulled = false;
+    if (sensor) batch.object.renderOrder = 2;
+    made.set(key, batch);
+  }
+  return {
+    batches: [...made.values()],
+    places: slots.map(({ key, slot }) => ({ batch: made.get(key) as Batch, slot })),
+  };
 }

@@ -11,112 +11,118 @@ const poseNumbers = 7;
 
 /** Writes the matrix (by column) of a part on a body; positions are taken relative to `origin`. */
 export function writePartMatrix(out: Float32Array, part: Part, poses: Poses, origin: Vec3, grow = 0): void {
-    const b = 3 * part.body;
-    const r = 4 * part.body;
-    const [bx, by, bz, bw] = [poses.rotations[r], poses.rotations[r + 1], poses.rotations[r + 2], poses.rotations[r + 3]];
-    const [px, py, pz] = part.pose.position;
-    const [lx, ly, lz, lw] = part.pose.rotation;
-    const tx = 2 * (by * pz - bz * py);
-    const ty = 2 * (bz * px - bx * pz);
-    const tz = 2 * (bx * py - by * px);
-    const x = bw * lx + bx * lw + by * lz - bz * ly;
-    const y = bw * ly - bx * lz + by * lw + bz * lx;
-    const z = bw * lz + bx * ly - by * lx + bz * lw;
-    const w = bw * lw - bx * lx - by * ly - bz * lz;
-    const sx = part.size[0] + grow;
-    const sy = part.size[1] + grow;
-    const sz = part.size[2] + grow;
-    out[0] = (1 - 2 * (y * y + z * z)) * sx;
-    out[1] = 2 * (x * y + z * w) * sx;
-    out[2] = 2 * (x * z - y * w) * sx;
-    out[4] = 2 * (x * y - z * w) * sy;
-    out[5] = (1 - 2 * (x * x + z * z)) * sy;
-    out[6] = 2 * (y * z + x * w) * sy;
-    out[8] = 2 * (x * z + y * w) * sz;
-    out[9] = 2 * (y * z - x * w) * sz;
-    out[10] = (1 - 2 * (x * x + y * y)) * sz;
-    out[12] = poses.positions[b] - origin[0] + px + bw * tx + by * tz - bz * ty;
-    out[13] = poses.positions[b + 1] - origin[1] + py + bw * ty + bz * tx - bx * tz;
-    out[14] = poses.positions[b + 2] - origin[2] + pz + bw * tz + bx * ty - by * tx;
-    out[3] = out[7] = out[11] = 0;
-    out[15] = 1;
+  const b = 3 * part.body;
+  const r = 4 * part.body;
+  const [bx, by, bz, bw] = [poses.rotations[r], poses.rotations[r + 1], poses.rotations[r + 2], poses.rotations[r + 3]];
+  const [px, py, pz] = part.pose.position;
+  const [lx, ly, lz, lw] = part.pose.rotation;
+  const tx = 2 * (by * pz - bz * py);
+  const ty = 2 * (bz * px - bx * pz);
+  const tz = 2 * (bx * py - by * px);
+  const x = bw * lx + bx * lw + by * lz - bz * ly;
+  const y = bw * ly - bx * lz + by * lw + bz * lx;
+  const z = bw * lz + bx * ly - by * lx + bz * lw;
+  const w = bw * lw - bx * lx - by * ly - bz * lz;
+  const sx = part.size[0] + grow;
+  const sy = part.size[1] + grow;
+  const sz = part.size[2] + grow;
+  out[0] = (1 - 2 * (y * y + z * z)) * sx;
+  out[1] = 2 * (x * y + z * w) * sx;
+  out[2] = 2 * (x * z - y * w) * sx;
+  out[4] = 2 * (x * y - z * w) * sy;
+  out[5] = (1 - 2 * (x * x + z * z)) * sy;
+  out[6] = 2 * (y * z + x * w) * sy;
+  out[8] = 2 * (x * z + y * w) * sz;
+  out[9] = 2 * (y * z - x * w) * sz;
+  out[10] = (1 - 2 * (x * x + y * y)) * sz;
+  out[12] = poses.positions[b] - origin[0] + px + bw * tx + by * tz - bz * ty;
+  out[13] = poses.positions[b + 1] - origin[1] + py + bw * ty + bz * tx - bx * tz;
+  out[14] = poses.positions[b + 2] - origin[2] + pz + bw * tz + bx * ty - by * tx;
+  out[3] = out[7] = out[11] = 0;
+  out[15] = 1;
 }
 
 export class BodyLayer {
-    readonly group = new Group();
-    readonly parts: Part[];
-    private readonly batches: Batch[];
-    private readonly places: { batch: Batch; slot: number }[];
-    /** what each body's parts were last placed by: seven numbers of its pose */
-    private readonly placed: Float64Array;
-    private readonly shown: Uint8Array;
-    /** colour and shading that each part has now */
-    private readonly keys: Int32Array;
-    private readonly matrix = new Float32Array(16);
-    private readonly colour = new Float32Array(3);
+  readonly group = new Group();
+  readonly parts: Part[];
+  private readonly batches: Batch[];
+  private readonly places: { batch: Batch; slot: number }[];
+  /** what each body's parts were last placed by: seven numbers of its pose */
+  private readonly placed: Float64Array;
+  private readonly shown: Uint8Array;
+  /** colour and shading that each part has now */
+  private readonly keys: Int32Array;
+  private readonly matrix = new Float32Array(16);
+  private readonly colour = new Float32Array(3);
 
-    constructor(private readonly tables: Tables, private readonly origin: Vec3) {
-        this.parts = makeParts(tables);
-        const { batches, places } = makeBatches(this.parts);
-        this.batches = batches;
-        this.places = places;
-        this.placed = new Float64Array(poseNumbers * tables.bodies.length).fill(NaN);
-        this.shown = new Uint8Array(this.parts.length);
-        this.keys = new Int32Array(this.parts.length).fill(-1);
-        for (const { object } of batches) this.group.add(object);
-    }
+  constructor(
+    private readonly tables: Tables,
+    private readonly origin: Vec3,
+  ) {
+    this.parts = makeParts(tables);
+    const { batches, places } = makeBatches(this.parts);
+    this.batches = batches;
+    this.places = places;
+    this.placed = new Float64Array(poseNumbers * tables.bodies.length).fill(NaN);
+    this.shown = new Uint8Array(this.parts.length);
+    this.keys = new Int32Array(this.parts.length).fill(-1);
+    for (const { object } of batches) this.group.add(object);
+  }
 
-    /** Places what moved, came or went since the last call. */
-    place(poses: Poses): void {
-        const moved = this.findMoved(poses);
-        const number = poses.frame?.number ?? 0;
-        this.parts.forEach((part, i) => {
-            const { batch, slot } = this.places[i];
-            const show = poses.present[part.body] === 1 && number >= part.from && number < part.to;
-            if (!show) {
-                if (this.shown[i]) batch.setMatrix(slot, hidden);
-            } else if (moved[part.body] || !this.shown[i]) {
-                writePartMatrix(this.matrix, part, poses, this.origin);
-                batch.setMatrix(slot, this.matrix);
-            }
-            this.shown[i] = show ? 1 : 0;
-        });
-        for (const batch of this.batches) batch.flush();
-    }
+  /** Places what moved, came or went since the last call. */
+  place(poses: Poses): void {
+    const moved = this.findMoved(poses);
+    const number = poses.frame?.number ?? 0;
+    this.parts.forEach((part, i) => {
+      const { batch, slot } = this.places[i];
+      const show = poses.present[part.body] === 1 && number >= part.from && number < part.to;
+      if (!show) {
+        if (this.shown[i]) batch.setMatrix(slot, hidden);
+      } else if (moved[part.body] || !this.shown[i]) {
+        writePartMatrix(this.matrix, part, poses, this.origin);
+        batch.setMatrix(slot, this.matrix);
+      }
+      this.shown[i] = show ? 1 : 0;
+    });
+    for (const batch of this.batches) batch.flush();
+  }
 
-    /** Colours all parts as of the frame that is shown. */
-    paint(poses: Poses, by: Colouring): void {
-        const { frame } = poses;
-        if (!frame) return;
-        this.parts.forEach((part, i) => {
-            const colour = colourOf(part.body, part.colour, frame, by);
-            const isOwn = part.colour !== null && by === "material";
-            const key = 2 * colour + (isOwn ? 1 : 0);
-            if (key === this.keys[i]) return;
-            this.keys[i] = key;
-            writeLinear(this.colour, 0, colour, isOwn ? 1 : shadeOf(part.body));
-            const { batch, slot } = this.places[i];
-            batch.setColour(slot, this.colour);
-        });
-        for (const batch of this.batches) batch.flush();
-    }
+  /** Colours all parts as of the frame that is shown. */
+  paint(poses: Poses, by: Colouring): void {
+    const { frame } = poses;
+    if (!frame) return;
+    this.parts.forEach((part, i) => {
+      const colour = colourOf(part.body, part.colour, frame, by);
+      const isOwn = part.colour !== null && by === "material";
+      const key = 2 * colour + (isOwn ? 1 : 0);
+      if (key === this.keys[i]) return;
+      this.keys[i] = key;
+      writeLinear(this.colour, 0, colour, isOwn ? 1 : shadeOf(part.body));
+      const { batch, slot } = this.places[i];
+      batch.setColour(slot, this.colour);
+    });
+    for (const batch of this.batches) batch.flush();
+  }
 
-    private findMoved(poses: Poses): Uint8Array {
-        const moved = new Uint8Array(this.tables.bodies.length);
-        const { placed } = this;
-        const { positions, rotations } = poses;
-        for (let row = 0, at = 0; row < moved.length; ++row, at += poseNumbers) {
-            if (
-                placed[at] === positions[3 * row] && placed[at + 1] === positions[3 * row + 1] &&
-                placed[at + 2] === positions[3 * row + 2] && placed[at + 3] === rotations[4 * row] &&
-                placed[at + 4] === rotations[4 * row + 1] && placed[at + 5] === rotations[4 * row + 2] &&
-                placed[at + 6] === rotations[4 * row + 3]
-            )
-                continue;
-            moved[row] = 1;
-            for (let i = 0; i < 3; ++i) placed[at + i] = positions[3 * row + i];
-            for (let i = 0; i < 4; ++i) placed[at + 3 + i] = rotations[4 * row + i];
-        }
-        return moved;
+  private findMoved(poses: Poses): Uint8Array {
+    const moved = new Uint8Array(this.tables.bodies.length);
+    const { placed } = this;
+    const { positions, rotations } = poses;
+    for (let row = 0, at = 0; row < moved.length; ++row, at += poseNumbers) {
+      if (
+        placed[at] === positions[3 * row] &&
+        placed[at + 1] === positions[3 * row + 1] &&
+        placed[at + 2] === positions[3 * row + 2] &&
+        placed[at + 3] === rotations[4 * row] &&
+        placed[at + 4] === rotations[4 * row + 1] &&
+        placed[at + 5] === rotations[4 * row + 2] &&
+        placed[at + 6] === rotations[4 * row + 3]
+      )
+        continue;
+      moved[row] = 1;
+      for (let i = 0; i < 3; ++i) placed[at + i] = positions[3 * row + i];
+      for (let i = 0; i < 4; ++i) placed[at + 3 + i] = rotations[4 * row + i];
     }
+    return moved;
+  }
 }

@@ -7,97 +7,100 @@ const from = new Vector3(0.62, 0.3, 1).normalize();
 const margin = 1.06;
 
 export class Camera {
-    readonly eye = new PerspectiveCamera(40, 1, 0.1, 1000);
-    private readonly controls: OrbitControls;
-    private free = 1;
-    private followed: Vector3 | null = null;
+  readonly eye = new PerspectiveCamera(40, 1, 0.1, 1000);
+  private readonly controls: OrbitControls;
+  private free = 1;
+  private followed: Vector3 | null = null;
 
-    constructor(canvas: HTMLCanvasElement, onChange: () => void) {
-        this.controls = new OrbitControls(this.eye, canvas);
-        this.controls.enableDamping = true;
-        this.controls.dampingFactor = 0.12;
-        this.controls.zoomToCursor = true;
-        this.controls.maxPolarAngle = Math.PI * 0.96;
-        this.controls.addEventListener("change", onChange);
-    }
+  constructor(canvas: HTMLCanvasElement, onChange: () => void) {
+    this.controls = new OrbitControls(this.eye, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.zoomToCursor = true;
+    this.controls.maxPolarAngle = Math.PI * 0.96;
+    this.controls.addEventListener("change", onChange);
+  }
 
-    get target(): Vector3 {
-        return this.controls.target;
-    }
-    get distance(): number {
-        return this.eye.position.distanceTo(this.controls.target);
-    }
+  get target(): Vector3 {
+    return this.controls.target;
+  }
+  get distance(): number {
+    return this.eye.position.distanceTo(this.controls.target);
+  }
 
-    /** Fits the picture into a window of which panels cover `below` pixels at the bottom: its middle is above them. */
-    resize(width: number, height: number, below: number): void {
-        this.eye.aspect = width / Math.max(1, height);
-        this.free = 1 - below / Math.max(1, height);
-        this.eye.setViewOffset(width, height, 0, below / 2, width, height);
-        this.eye.updateProjectionMatrix();
-    }
+  /** Fits the picture into a window of which panels cover `below` pixels at the bottom: its middle is above them. */
+  resize(width: number, height: number, below: number): void {
+    this.eye.aspect = width / Math.max(1, height);
+    this.free = 1 - below / Math.max(1, height);
+    this.eye.setViewOffset(width, height, 0, below / 2, width, height);
+    this.eye.updateProjectionMatrix();
+  }
 
-    /** Looks from a little above at a box of half sizes `half` around `centre`, so that it fills what is free of the window. */
-    frame(centre: Vector3, half: Vector3): void {
-        const up = new Vector3(0, 1, 0);
-        const right = up.clone().cross(from).normalize();
-        const above = from.clone().cross(right);
-        const tall = Math.tan((this.eye.fov * Math.PI) / 360) * this.free;
-        const wide = Math.tan((this.eye.fov * Math.PI) / 360) * this.eye.aspect;
-        let distance = 0;
-        for (let corner = 0; corner < 8; ++corner) {
-            const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-            const towards = at.dot(from);
-            distance = Math.max(distance, towards + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall) * margin);
-        }
-        this.controls.target.copy(centre);
-        this.eye.position.copy(centre).addScaledVector(from, Math.max(distance, 0.5));
-        this.controls.minDistance = 0.02 * half.length();
-        this.controls.maxDistance = 60 * half.length();
-        this.controls.update();
+  /** Looks from a little above at a box of half sizes `half` around `centre`: it fills what is free of the window. */
+  frame(centre: Vector3, half: Vector3): void {
+    const up = new Vector3(0, 1, 0);
+    const right = up.clone().cross(from).normalize();
+    const above = from.clone().cross(right);
+    const tall = Math.tan((this.eye.fov * Math.PI) / 360) * this.free;
+    const wide = Math.tan((this.eye.fov * Math.PI) / 360) * this.eye.aspect;
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+      const towards = at.dot(from);
+      distance = Math.max(
+        distance,
+        towards + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall) * margin,
+      );
     }
+    this.controls.target.copy(centre);
+    this.eye.position.copy(centre).addScaledVector(from, Math.max(distance, 0.5));
+    this.controls.minDistance = 0.02 * half.length();
+    this.controls.maxDistance = 12 * half.length();
+    this.controls.update();
+  }
 
-    /** Goes along with a point from now on; null: stays. */
-    follow(at: Vector3 | null): void {
-        this.followed = at?.clone() ?? null;
-    }
-    /** Where the followed point is now. */
-    moveFollowed(at: Vector3): void {
-        if (!this.followed) return;
-        const step = at.clone().sub(this.followed);
-        this.eye.position.add(step);
-        this.controls.target.add(step);
-        this.followed.copy(at);
-    }
+  /** Goes along with a point from now on; null: stays. */
+  follow(at: Vector3 | null): void {
+    this.followed = at?.clone() ?? null;
+  }
+  /** Where the followed point is now. */
+  moveFollowed(at: Vector3): void {
+    if (!this.followed) return;
+    const step = at.clone().sub(this.followed);
+    this.eye.position.add(step);
+    this.controls.target.add(step);
+    this.followed.copy(at);
+  }
 
-    /** Swings on after a drag. True while the camera still moves. */
-    update(): boolean {
-        const { eye } = this;
-        const distance = this.distance;
-        const near = Math.max(0.01, distance * 0.01);
-        const far = Math.max(4000, distance * 40);
-        if (eye.near !== near || eye.far !== far) {
-            eye.near = near;
-            eye.far = far;
-            eye.updateProjectionMatrix();
-        }
-        return this.controls.update();
+  /** Swings on after a drag. True while the camera still moves. */
+  update(): boolean {
+    const { eye } = this;
+    const distance = this.distance;
+    const near = Math.max(0.01, distance * 0.01);
+    const far = Math.max(4000, distance * 40);
+    if (eye.near !== near || eye.far !== far) {
+      eye.near = near;
+      eye.far = far;
+      eye.updateProjectionMatrix();
     }
+    return this.controls.update();
+  }
 
-    /** Eye and target, six numbers. */
-    get place(): number[] {
-        return [...this.eye.position.toArray(), ...this.controls.target.toArray()];
-    }
-    set place(numbers: number[]) {
-        this.eye.position.fromArray(numbers);
-        this.controls.target.fromArray(numbers, 3);
-        this.controls.update();
-    }
+  /** Eye and target, six numbers. */
+  get place(): number[] {
+    return [...this.eye.position.toArray(), ...this.controls.target.toArray()];
+  }
+  set place(numbers: number[]) {
+    this.eye.position.fromArray(numbers);
+    this.controls.target.fromArray(numbers, 3);
+    this.controls.update();
+  }
 
-    /** The ray through a point of the canvas, given from -1 to 1 (right, up). */
-    ray(x: number, y: number): { origin: Vec3; direction: Vec3 } {
-        this.eye.updateMatrixWorld();
-        const origin = this.eye.position;
-        const direction = new Vector3(x, y, 0.5).unproject(this.eye).sub(origin).normalize();
-        return { origin: origin.toArray() as Vec3, direction: direction.toArray() as Vec3 };
-    }
+  /** The ray through a point of the canvas, given from -1 to 1 (right, up). */
+  ray(x: number, y: number): { origin: Vec3; direction: Vec3 } {
+    this.eye.updateMatrixWorld();
+    const origin = this.eye.position;
+    const direction = new Vector3(x, y, 0.5).unproject(this.eye).sub(origin).normalize();
+    return { origin: origin.toArray() as Vec3, direction: direction.toArray() as Vec3 };
+  }
 }

@@ -7,12 +7,12 @@ export type Colouring = (typeof colourings)[number];
 
 /** sRGB, 0xrrggbb */
 const palette = {
-    static: 0x7d8794,
-    kinematic: 0x35b8a6,
-    dynamic: 0xe0a458,
-    awake: 0xf28c5a,
-    asleep: 0x5b7ea8,
-    broken: 0xe0457b,
+  static: 0x7d8794,
+  kinematic: 0x35b8a6,
+  dynamic: 0xe0a458,
+  awake: 0xf28c5a,
+  asleep: 0x5b7ea8,
+  broken: 0xe0457b,
 };
 /** What a body without a colour of its own is made of: quiet stone and clay tones. */
 const clay = [0xe3d3b5, 0xd9c39c, 0xd8b898, 0xe6dcc8, 0xcbb592, 0xdcbf8a];
@@ -23,70 +23,70 @@ const linear = Float32Array.from({ length: 256 }, (_, i) => toLinear(i / 255));
 
 /** A colour of full light for a number, well spread round the wheel (golden angle). */
 function wheel(n: number): number {
-    const hue = (n * 0.61803398875) % 1;
-    const value = 0.74 + 0.22 * hash01(n + 7);
-    const saturation = 0.34 + 0.2 * hash01(n + 3);
-    const channel = (k: number) => {
-        const t = (k + hue * 6) % 6;
-        return Math.round(255 * (value - value * saturation * Math.max(0, Math.min(t, 4 - t, 1))));
-    };
-    return (channel(5) << 16) | (channel(3) << 8) | channel(1);
+  const hue = (n * 0.61803398875) % 1;
+  const value = 0.74 + 0.22 * hash01(n + 7);
+  const saturation = 0.34 + 0.2 * hash01(n + 3);
+  const channel = (k: number) => {
+    const t = (k + hue * 6) % 6;
+    return Math.round(255 * (value - value * saturation * Math.max(0, Math.min(t, 4 - t, 1))));
+  };
+  return (channel(5) << 16) | (channel(3) << 8) | channel(1);
 }
 
 /** The sRGB colour of a body (its part's own colour is `own`) at a frame. */
 export function colourOf(row: number, own: number | null, frame: Frame, by: Colouring): number {
-    const flags = frame.flags[row];
-    if (by === "material") {
-        if (own !== null) return own;
-        const kind = kindOf(flags);
-        return kind === 2 ? clay[Math.floor(hash01(row) * clay.length)] : kindColours[kind];
-    }
-    if (by === "kind") return kindColours[kindOf(flags)];
-    if (kindOf(flags) === 0) return palette.static;
-    if (by === "sleep") {
-        if (flags & flagBroken) return palette.broken;
-        return flags & flagAwake ? palette.awake : palette.asleep;
-    }
-    const island = frame.islands[row];
-    if (island === noIsland) return kindOf(flags) === 1 ? palette.kinematic : 0x8791a0;
-    return wheel(island);
+  const flags = frame.flags[row];
+  if (by === "material") {
+    if (own !== null) return own;
+    const kind = kindOf(flags);
+    return kind === 2 ? clay[Math.floor(hash01(row) * clay.length)] : kindColours[kind];
+  }
+  if (by === "kind") return kindColours[kindOf(flags)];
+  if (kindOf(flags) === 0) return palette.static;
+  if (by === "sleep") {
+    if (flags & flagBroken) return palette.broken;
+    return flags & flagAwake ? palette.awake : palette.asleep;
+  }
+  const island = frame.islands[row];
+  if (island === noIsland) return kindOf(flags) === 1 ? palette.kinematic : 0x8791a0;
+  return wheel(island);
 }
 
 /** Writes a colour as linear light, made a little lighter or darker by `shade` (1: as it is). */
 export function writeLinear(out: Float32Array, at: number, colour: number, shade: number): void {
-    out[at] = linear[(colour >> 16) & 255] * shade;
-    out[at + 1] = linear[(colour >> 8) & 255] * shade;
-    out[at + 2] = linear[colour & 255] * shade;
+  out[at] = linear[(colour >> 16) & 255] * shade;
+  out[at + 1] = linear[(colour >> 8) & 255] * shade;
+  out[at + 2] = linear[colour & 255] * shade;
 }
 
 /** Neighbours of one colour are told apart by a touch of light. */
 export const shadeOf = (row: number): number => 0.9 + 0.2 * hash01(row * 2 + 1);
 
 export interface LegendKey {
-    name: string;
-    colour: number;
+  name: string;
+  colour: number;
 }
 export function legendOf(by: Colouring): LegendKey[] {
-    switch (by) {
-        case "kind":
-            return [
-                { name: "static", colour: palette.static },
-                { name: "kinematic", colour: palette.kinematic },
-                { name: "dynamic", colour: palette.dynamic },
-            ];
-        case "sleep":
-            return [
-                { name: "awake", colour: palette.awake },
-                { name: "asleep", colour: palette.asleep },
-                { name: "static", colour: palette.static },
-            ];
-        case "island":
-            return [
-                { name: "a colour an island", colour: wheel(5) },
-                { name: "none or asleep", colour: 0x8791a0 },
-                { name: "static", colour: palette.static },
-            ];
-        case "material":
-            return [];
-    }
+  switch (by) {
+    case "kind":
+      return [
+        { name: "static", colour: palette.static },
+        { name: "kinematic", colour: palette.kinematic },
+        { name: "dynamic", colour: palette.dynamic },
+      ];
+    case "sleep":
+      return [
+        { name: "awake", colour: palette.awake },
+        { name: "asleep", colour: palette.asleep },
+        { name: "static", colour: palette.static },
+      ];
+    case "island":
+      return [
+        { name: "a colour an island", colour: wheel(5) },
+        { name: "none or asleep", colour: 0x8791a0 },
+        { name: "static", colour: palette.static },
+      ];
+    case "material":
+      return [];
+  }
 }

@@ -16,40 +16,41 @@ const gridBody = /* glsl */ `
 vec2 middle = vGrid / glow;
 float fine = gridLines(vGrid, gridCell);
 float coarse = gridLines(vGrid, gridCell * 10.0);
-diffuseColor.rgb = mix(diffuseColor.rgb * (0.82 + 0.3 * exp(-dot(middle, middle))), vec3(0.85, 0.93, 1.0), 0.08 * fine + 0.15 * coarse);
+diffuseColor.rgb *= 0.82 + 0.3 * exp(-dot(middle, middle));
+diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.85, 0.93, 1.0), 0.08 * fine + 0.15 * coarse);
 `;
 const airyAlpha = /* glsl */ `diffuseColor.a = 0.05 + 0.35 * max(fine, coarse);`;
 
-/** `solid`: opaque ground; else lines in the air, for recordings without ground. `cell` in metres; lighter within `glow` metres. */
+/** `solid`: opaque; else lines in the air, in scenes without ground. Lines every `cell` m; lighter within `glow` m. */
 export function makeGround(matrix: Matrix4, solid: boolean, cell: number, glow: number): Mesh {
-    const material = new MeshStandardMaterial({ color: 0x76838f, roughness: 0.95, metalness: 0 });
-    if (!solid) {
-        material.transparent = true;
-        material.depthWrite = false;
-        material.side = DoubleSide;
-    }
-    material.onBeforeCompile = (shader) => {
-        shader.uniforms.gridCell = { value: cell };
-        shader.uniforms.glow = { value: glow };
-        shader.vertexShader = shader.vertexShader
-            .replace("#include <common>", "#include <common>\nvarying vec2 vGrid;")
-            .replace("#include <begin_vertex>", "#include <begin_vertex>\nvGrid = position.xz;");
-        shader.fragmentShader = shader.fragmentShader
-            .replace("#include <common>", `#include <common>\nuniform float gridCell, glow;\n${gridHead}`)
-            .replace("#include <color_fragment>", `#include <color_fragment>\n${gridBody}\n${solid ? "" : airyAlpha}`);
-    };
-    material.customProgramCacheKey = () => `fase-ground-${solid}`;
-    // A lawn or floor that lies on the ground is seen, not the ground.
-    material.polygonOffset = true;
-    material.polygonOffsetFactor = 4;
-    material.polygonOffsetUnits = 16;
-    const reach = Math.max(least, 20 * glow);
-    const geometry = new PlaneGeometry(2 * reach, 2 * reach, 1, 1);
-    geometry.rotateX(-Math.PI / 2);
-    const ground = new Mesh(geometry, material);
-    ground.matrixAutoUpdate = false;
-    ground.matrix.copy(matrix);
-    ground.receiveShadow = true;
-    ground.frustumCulled = false;
-    return ground;
+  const material = new MeshStandardMaterial({ color: 0x76838f, roughness: 0.95, metalness: 0 });
+  if (!solid) {
+    material.transparent = true;
+    material.depthWrite = false;
+    material.side = DoubleSide;
+  }
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.gridCell = { value: cell };
+    shader.uniforms.glow = { value: glow };
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nvarying vec2 vGrid;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvGrid = position.xz;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", `#include <common>\nuniform float gridCell, glow;\n${gridHead}`)
+      .replace("#include <color_fragment>", `#include <color_fragment>\n${gridBody}\n${solid ? "" : airyAlpha}`);
+  };
+  material.customProgramCacheKey = () => `fase-ground-${solid}`;
+  // A lawn or floor that lies on the ground is seen, not the ground.
+  material.polygonOffset = true;
+  material.polygonOffsetFactor = 4;
+  material.polygonOffsetUnits = 16;
+  const reach = Math.max(least, 20 * glow);
+  const geometry = new PlaneGeometry(2 * reach, 2 * reach, 1, 1);
+  geometry.rotateX(-Math.PI / 2);
+  const ground = new Mesh(geometry, material);
+  ground.matrixAutoUpdate = false;
+  ground.matrix.copy(matrix);
+  ground.receiveShadow = true;
+  ground.frustumCulled = false;
+  return ground;
 }

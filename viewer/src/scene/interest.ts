@@ -9,36 +9,36 @@ const fewShare = 0.02;
 const slack = 0.4;
 
 const join = (boxes: Bounds[]): Bounds => ({
-    lo: [0, 1, 2].map((i) => boxes.reduce((lo, box) => Math.min(lo, box.lo[i]), Infinity)) as Vec3,
-    hi: [0, 1, 2].map((i) => boxes.reduce((hi, box) => Math.max(hi, box.hi[i]), -Infinity)) as Vec3,
+  lo: [0, 1, 2].map((i) => boxes.reduce((lo, box) => Math.min(lo, box.lo[i]), Infinity)) as Vec3,
+  hi: [0, 1, 2].map((i) => boxes.reduce((hi, box) => Math.max(hi, box.hi[i]), -Infinity)) as Vec3,
 });
 const size = (box: Bounds) => Math.hypot(...box.hi.map((x, i) => x - box.lo[i]));
 
 /** Leaves out what is far from where all but a few are. */
 function withoutOutliers(boxes: Bounds[]): Bounds[] {
-    if (boxes.length < many) return boxes;
-    const spans = [0, 1, 2].map((i) => {
-        const middles = boxes.map(({ lo, hi }) => (lo[i] + hi[i]) / 2).sort((a, b) => a - b);
-        const few = Math.floor(middles.length * fewShare);
-        const [from, to] = [middles[few], middles[middles.length - 1 - few]];
-        const room = slack * (to - from) + 1e-3;
-        return [from - room, to + room];
-    });
-    return boxes.filter(({ lo, hi }) => spans.every(([from, to], i) => hi[i] >= from && lo[i] <= to));
+  if (boxes.length < many) return boxes;
+  const spans = [0, 1, 2].map((i) => {
+    const middles = boxes.map(({ lo, hi }) => (lo[i] + hi[i]) / 2).sort((a, b) => a - b);
+    const few = Math.floor(middles.length * fewShare);
+    const [from, to] = [middles[few], middles[middles.length - 1 - few]];
+    const room = slack * (to - from) + 1e-3;
+    return [from - room, to + room];
+  });
+  return boxes.filter(({ lo, hi }) => spans.every(([from, to], i) => hi[i] >= from && lo[i] <= to));
 }
 
 /** All that moves but outliers and, unless that is much larger, what does not move as well. */
 export function boundsOfInterest(tables: Tables, poses: Poses): Bounds {
-    const moving: Bounds[] = [];
-    const fixed: Bounds[] = [];
-    for (const collider of tables.colliders) {
-        if (!poses.frame || !isThere(collider, poses.frame) || collider.sensor) continue;
-        const box = worldBox(tables, collider, poses);
-        if (box) (tables.bodies[collider.body].kind === 0 ? fixed : moving).push(box);
-    }
-    if (moving.length + fixed.length === 0) return { lo: [-2, 0, -2], hi: [2, 2, 2] };
-    if (moving.length === 0) return join(fixed);
-    const middle = join(withoutOutliers(moving));
-    const all = join([middle, ...fixed]);
-    return size(all) > 2 * size(middle) ? middle : all;
+  const moving: Bounds[] = [];
+  const fixed: Bounds[] = [];
+  for (const collider of tables.colliders) {
+    if (!poses.frame || !isThere(collider, poses.frame) || collider.sensor) continue;
+    const box = worldBox(tables, collider, poses);
+    if (box) (tables.bodies[collider.body].kind === 0 ? fixed : moving).push(box);
+  }
+  if (moving.length + fixed.length === 0) return { lo: [-2, 0, -2], hi: [2, 2, 2] };
+  if (moving.length === 0) return join(fixed);
+  const middle = join(withoutOutliers(moving));
+  const all = join([middle, ...fixed]);
+  return size(all) > 2 * size(middle) ? middle : all;
 }

@@ -10,7 +10,8 @@ flat varying mat3 vTurn;
 const vertexBody = /* glsl */ `
 vHalf = vec3(length(instanceMatrix[0].xyz), length(instanceMatrix[1].xyz), length(instanceMatrix[2].xyz));
 vLocal = position * vHalf;
-vTurn = normalMatrix * mat3(instanceMatrix[0].xyz / vHalf.x, instanceMatrix[1].xyz / vHalf.y, instanceMatrix[2].xyz / vHalf.z);
+vTurn = mat3(instanceMatrix[0].xyz / vHalf.x, instanceMatrix[1].xyz / vHalf.y, instanceMatrix[2].xyz / vHalf.z);
+vTurn = normalMatrix * vTurn;
 `;
 const fragmentHead = /* glsl */ `
 varying vec3 vLocal;
@@ -32,31 +33,37 @@ const blockNormal = /* glsl */ `
     diffuseColor.rgb *= mix(1.0, 0.8 + 0.2 * smoothstep(0.0, 0.9, inner), detail);
 }
 `;
+const stripe = /* glsl */ `
+{
+    float x = vLocal.x / vHalf.x;
+    diffuseColor.rgb *= 1.0 - 0.2 * smoothstep(0.0, 1.5 * fwidth(x), 0.3 - abs(x));
+}
+`;
 const marks: Partial<Record<Form, string>> = {
-    ball: /* glsl */ `{ vec3 s = sides(vLocal / vHalf); diffuseColor.rgb *= 1.0 + 0.16 * s.x * s.y * s.z; }`,
-    drum: /* glsl */ `{ vec3 s = sides(vLocal / vHalf); diffuseColor.rgb *= 1.0 + 0.12 * s.x * s.z; }`,
-    tube: /* glsl */ `{ float x = vLocal.x / vHalf.x; diffuseColor.rgb *= 1.0 - 0.2 * smoothstep(0.0, 1.5 * fwidth(x), 0.3 - abs(x)); }`,
-    cap: /* glsl */ `{ float x = vLocal.x / vHalf.x; diffuseColor.rgb *= 1.0 - 0.2 * smoothstep(0.0, 1.5 * fwidth(x), 0.3 - abs(x)); }`,
+  ball: /* glsl */ `{ vec3 s = sides(vLocal / vHalf); diffuseColor.rgb *= 1.0 + 0.16 * s.x * s.y * s.z; }`,
+  drum: /* glsl */ `{ vec3 s = sides(vLocal / vHalf); diffuseColor.rgb *= 1.0 + 0.12 * s.x * s.z; }`,
+  tube: stripe,
+  cap: stripe,
 };
 
 /** The material of a batch; sensors are glassy. */
 export function makeMaterial(form: Form, sensor: boolean): MeshStandardMaterial {
-    const material = new MeshStandardMaterial({ roughness: 0.78, metalness: 0 });
-    if (sensor) {
-        material.transparent = true;
-        material.opacity = 0.22;
-        material.depthWrite = false;
-    }
-    if (form === "mesh") return material;
-    const detail = form === "block" ? blockNormal : (marks[form] ?? "");
-    material.onBeforeCompile = (shader) => {
-        shader.vertexShader = shader.vertexShader
-            .replace("#include <common>", `#include <common>\n${vertexHead}`)
-            .replace("#include <begin_vertex>", `#include <begin_vertex>\n${vertexBody}`);
-        shader.fragmentShader = shader.fragmentShader
-            .replace("#include <common>", `#include <common>\n${fragmentHead}`)
-            .replace("#include <normal_fragment_maps>", `#include <normal_fragment_maps>\n${detail}`);
-    };
-    material.customProgramCacheKey = () => `fase-${form}`;
-    return material;
+  const material = new MeshStandardMaterial({ roughness: 0.78, metalness: 0 });
+  if (sensor) {
+    material.transparent = true;
+    material.opacity = 0.22;
+    material.depthWrite = false;
+  }
+  if (form === "mesh") return material;
+  const detail = form === "block" ? blockNormal : (marks[form] ?? "");
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", `#include <common>\n${vertexHead}`)
+      .replace("#include <begin_vertex>", `#include <begin_vertex>\n${vertexBody}`);
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", `#include <common>\n${fragmentHead}`)
+      .replace("#include <normal_fragment_maps>", `#include <normal_fragment_maps>\n${detail}`);
+  };
+  material.customProgramCacheKey = () => `fase-${form}`;
+  return material;
 }

@@ -1,94 +1,107 @@
 /** Renderer, light, sky and ground: all that is on the stage but the actors. */
 import {
-    DirectionalLight, Fog, HemisphereLight, type Object3D, PCFShadowMap, type PerspectiveCamera, Scene, SRGBColorSpace,
-    NeutralToneMapping, Vector3, WebGLRenderer,
+  DirectionalLight,
+  Fog,
+  HemisphereLight,
+  type Object3D,
+  PCFShadowMap,
+  type PerspectiveCamera,
+  Scene,
+  SRGBColorSpace,
+  NeutralToneMapping,
+  Vector3,
+  WebGLRenderer,
 } from "three";
 import { horizon, makeSky } from "./sky";
 
 const sunDirection = new Vector3(0.55, 1, 0.38).normalize();
 
 export class Stage {
-    readonly scene = new Scene();
-    private readonly renderer: WebGLRenderer;
-    private readonly sun = new DirectionalLight(0xffefd6, 2.55);
-    private width = 1;
-    private height = 1;
-    private drawnShare = 0;
-    private readonly fog = new Fog(horizon, 60, 400);
+  readonly scene = new Scene();
+  private readonly renderer: WebGLRenderer;
+  private readonly sun = new DirectionalLight(0xffefd6, 2.55);
+  private width = 1;
+  private height = 1;
+  private drawnShare = 0;
+  private readonly fog = new Fog(horizon, 60, 400);
 
-    /** Throws when the browser has no WebGL 2; with `isSoftware`, pictures are made with less work. */
-    constructor(canvas: HTMLCanvasElement, private readonly isSoftware: boolean) {
-        this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-        this.renderer.outputColorSpace = SRGBColorSpace;
-        this.renderer.toneMapping = NeutralToneMapping;
-        this.renderer.toneMappingExposure = 1.0;
-        this.renderer.shadowMap.enabled = true;
-        this.renderer.shadowMap.type = PCFShadowMap;
-        this.scene.fog = this.fog;
-        this.scene.add(makeSky(), new HemisphereLight(0xdbe8fa, 0xa39888, 1.95));
-        const back = new DirectionalLight(0xa9c4ff, 0.45);
-        back.position.set(-0.7, 0.45, -0.6);
-        this.scene.add(back);
+  /** Throws when the browser has no WebGL 2; with `isSoftware`, pictures are made with less work. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly isSoftware: boolean,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.outputColorSpace = SRGBColorSpace;
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.toneMappingExposure = 1.0;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene.fog = this.fog;
+    this.scene.add(makeSky(), new HemisphereLight(0xdbe8fa, 0xa39888, 1.95));
+    const back = new DirectionalLight(0xa9c4ff, 0.45);
+    back.position.set(-0.7, 0.45, -0.6);
+    this.scene.add(back);
 
-        this.sun.castShadow = true;
-        const side = isSoftware ? 2048 : this.renderer.capabilities.maxTextureSize >= 8192 ? 4096 : 2048;
-        this.sun.shadow.mapSize.set(side, side);
-        this.sun.shadow.radius = 3;
-        this.sun.shadow.intensity = 0.85;
-        this.scene.add(this.sun, this.sun.target);
+    this.sun.castShadow = true;
+    const side = isSoftware ? 2048 : this.renderer.capabilities.maxTextureSize >= 8192 ? 4096 : 2048;
+    this.sun.shadow.mapSize.set(side, side);
+    this.sun.shadow.radius = 3;
+    this.sun.shadow.intensity = 0.85;
+    this.scene.add(this.sun, this.sun.target);
+  }
+
+  add(object: Object3D): void {
+    this.scene.add(object);
+  }
+
+  resize(width: number, height: number): void {
+    this.width = width;
+    this.height = height;
+    this.drawnShare = 0;
+  }
+
+  /** Was the last picture drawn with fewer pixels than the screen has? */
+  get isCoarse(): boolean {
+    return this.drawnShare < 1;
+  }
+
+  /** Draws one picture with a `share` of the screen's pixels each way; shadows are sharp within `radius` of `focus`. */
+  render(camera: PerspectiveCamera, share: number, focus: Vector3, radius: number, distance: number): void {
+    if (share !== this.drawnShare) {
+      this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, this.isSoftware ? 1 : 2));
+      this.renderer.setSize(this.width, this.height, false);
+      this.drawnShare = share;
     }
+    this.aimSun(focus, radius);
+    this.fog.near = distance + 2 * radius;
+    this.fog.far = 4 * distance + 16 * radius;
+    this.renderer.render(this.scene, camera);
+  }
 
-    add(object: Object3D): void {
-        this.scene.add(object);
+  /** Moves the shadow's window in whole texels, so that edges do not crawl when the camera follows. */
+  private aimSun(focus: Vector3, radius: number): void {
+    const { shadow } = this.sun;
+    const { camera } = shadow;
+    const wide = 2 ** (Math.ceil(4 * Math.log2(Math.max(radius, 0.5))) / 4);
+    if (camera.right !== wide) {
+      camera.left = camera.bottom = -wide;
+      camera.right = camera.top = wide;
+      camera.near = 0;
+      camera.far = 8 * wide;
+      camera.updateProjectionMatrix();
+      const texel = (2 * wide) / shadow.mapSize.x;
+      shadow.normalBias = 1.2 * texel;
+      shadow.bias = -0.0002;
     }
-
-    resize(width: number, height: number): void {
-        this.width = width;
-        this.height = height;
-        this.drawnShare = 0;
-    }
-
-    /** Was the last picture drawn with fewer pixels than the screen has? */
-    get isCoarse(): boolean {
-        return this.drawnShare < 1;
-    }
-
-    /** Draws one picture with a `share` of the screen's pixels in each direction; shadows are sharp within `radius` of `focus`. */
-    render(camera: PerspectiveCamera, share: number, focus: Vector3, radius: number, distance: number): void {
-        if (share !== this.drawnShare) {
-            this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, this.isSoftware ? 1 : 2));
-            this.renderer.setSize(this.width, this.height, false);
-            this.drawnShare = share;
-        }
-        this.aimSun(focus, radius);
-        this.fog.near = distance + 2 * radius;
-        this.fog.far = 4 * distance + 16 * radius;
-        this.renderer.render(this.scene, camera);
-    }
-
-    /** Moves the shadow's window in whole texels, so that edges do not crawl when the camera follows. */
-    private aimSun(focus: Vector3, radius: number): void {
-        const { shadow } = this.sun;
-        const { camera } = shadow;
-        const wide = 2 ** (Math.ceil(4 * Math.log2(Math.max(radius, 0.5))) / 4);
-        if (camera.right !== wide) {
-            camera.left = camera.bottom = -wide;
-            camera.right = camera.top = wide;
-            camera.near = 0;
-            camera.far = 8 * wide;
-            camera.updateProjectionMatrix();
-            const texel = (2 * wide) / shadow.mapSize.x;
-            shadow.normalBias = 1.2 * texel;
-            shadow.bias = -0.0002;
-        }
-        const texel = (2 * wide) / shadow.mapSize.x;
-        const right = new Vector3(0, 1, 0).cross(sunDirection).normalize();
-        const up = sunDirection.clone().cross(right);
-        const snap = (axis: Vector3) => Math.round(focus.dot(axis) / texel) * texel;
-        this.sun.target.position
-            .copy(right).multiplyScalar(snap(right))
-            .addScaledVector(up, snap(up))
-            .addScaledVector(sunDirection, focus.dot(sunDirection));
-        this.sun.position.copy(this.sun.target.position).addScaledVector(sunDirection, 4 * wide);
-    }
+    const texel = (2 * wide) / shadow.mapSize.x;
+    const right = new Vector3(0, 1, 0).cross(sunDirection).normalize();
+    const up = sunDirection.clone().cross(right);
+    const snap = (axis: Vector3) => Math.round(focus.dot(axis) / texel) * texel;
+    this.sun.target.position
+      .copy(right)
+      .multiplyScalar(snap(right))
+      .addScaledVector(up, snap(up))
+      .addScaledVector(sunDirection, focus.dot(sunDirection));
+    this.sun.position.copy(this.sun.target.position).addScaledVector(sunDirection, 4 * wide);
+  }
 }

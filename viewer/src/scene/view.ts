@@ -16,155 +16,170 @@ import { Stage } from "./stage";
 import { WorldBoxes } from "./world_boxes";
 
 export class View {
-    readonly poses: Poses;
-    readonly camera: Camera;
-    colouring: Colouring = "material";
-    private readonly stage: Stage;
-    private readonly origin: Vec3;
-    private readonly bodies: BodyLayer;
-    private readonly boxes: WorldBoxes;
-    private readonly contacts: ContactLayer;
-    private readonly highlight: Highlight;
-    private readonly centre: Vector3;
-    private readonly half: Vector3;
-    private readonly radius: number;
-    private width = 1;
-    private height = 1;
-    private painted = "";
-    private picked: number | null = null;
-    private followed: number | null = null;
+  readonly poses: Poses;
+  readonly camera: Camera;
+  colouring: Colouring = "material";
+  private readonly stage: Stage;
+  private readonly origin: Vec3;
+  private readonly bodies: BodyLayer;
+  private readonly boxes: WorldBoxes;
+  private readonly contacts: ContactLayer;
+  private readonly highlight: Highlight;
+  private readonly centre: Vector3;
+  private readonly half: Vector3;
+  private readonly radius: number;
+  private width = 1;
+  private height = 1;
+  private painted = "";
+  private picked: number | null = null;
+  private followed: number | null = null;
 
-    /** Throws when the browser has no WebGL 2. `onChange`: the camera moved. */
-    constructor(
-        canvas: HTMLCanvasElement, private readonly tables: Tables, first: Frame, isSoftware: boolean, onChange: () => void,
-    ) {
-        this.stage = new Stage(canvas, isSoftware);
-        this.poses = new Poses(tables.bodies.length);
-        this.poses.mix(first, first, 0);
-        const bounds = boundsOfInterest(tables, this.poses);
-        this.origin = bounds.lo.map((x, i) => Math.round((x + bounds.hi[i]) / 2)) as Vec3;
-        const relative = (v: Vec3) => new Vector3(...v).sub(new Vector3(...this.origin));
-        this.centre = relative(bounds.lo).add(relative(bounds.hi)).multiplyScalar(0.5);
-        this.half = relative(bounds.hi).sub(relative(bounds.lo)).multiplyScalar(0.5);
-        this.radius = Math.max(0.5, this.half.length());
-        this.bodies = new BodyLayer(tables, this.origin);
-        this.boxes = new WorldBoxes(tables, this.origin);
-        this.contacts = new ContactLayer(this.origin, this.radius * 0.02);
-        this.highlight = new Highlight(this.bodies.parts, this.origin);
-        for (const object of [this.bodies.group, this.boxes.object, this.contacts.group, this.highlight.group]) this.stage.add(object);
-        this.addGround(bounds);
-        this.camera = new Camera(canvas, onChange);
-    }
+  /** Throws when the browser has no WebGL 2. `onChange`: the camera moved. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly tables: Tables,
+    first: Frame,
+    isSoftware: boolean,
+    onChange: () => void,
+  ) {
+    this.stage = new Stage(canvas, isSoftware);
+    this.poses = new Poses(tables.bodies.length);
+    this.poses.mix(first, first, 0);
+    const bounds = boundsOfInterest(tables, this.poses);
+    this.origin = bounds.lo.map((x, i) => Math.round((x + bounds.hi[i]) / 2)) as Vec3;
+    const relative = (v: Vec3) => new Vector3(...v).sub(new Vector3(...this.origin));
+    this.centre = relative(bounds.lo).add(relative(bounds.hi)).multiplyScalar(0.5);
+    this.half = relative(bounds.hi).sub(relative(bounds.lo)).multiplyScalar(0.5);
+    this.radius = Math.max(0.5, this.half.length());
+    this.bodies = new BodyLayer(tables, this.origin);
+    this.boxes = new WorldBoxes(tables, this.origin);
+    this.contacts = new ContactLayer(this.origin, this.radius * 0.02);
+    this.highlight = new Highlight(this.bodies.parts, this.origin);
+    for (const object of [this.bodies.group, this.boxes.object, this.contacts.group, this.highlight.group])
+      this.stage.add(object);
+    this.addGround(bounds);
+    this.camera = new Camera(canvas, onChange);
+  }
 
-    /** `below`: pixels that panels cover at the bottom. */
-    resize(width: number, height: number, below: number): void {
-        this.width = width;
-        this.height = height;
-        this.stage.resize(width, height);
-        this.camera.resize(width, height, below);
-    }
+  /** `below`: pixels that panels cover at the bottom. */
+  resize(width: number, height: number, below: number): void {
+    this.width = width;
+    this.height = height;
+    this.stage.resize(width, height);
+    this.camera.resize(width, height, below);
+  }
 
-    /** Looks at everything. */
-    reframe(): void {
-        this.camera.frame(this.centre, this.half);
-    }
+  /** Looks at everything. */
+  reframe(): void {
+    this.camera.frame(this.centre, this.half);
+  }
 
-    /** Shows the mix of two frames. */
-    show(a: Frame, b: Frame, share: number): void {
-        this.poses.mix(a, b, share);
-        this.bodies.place(this.poses);
-        this.boxes.update(this.poses);
-        this.contacts.update(a);
-        this.highlight.update(this.poses, this.camera.eye);
-        const painted = `${a.number} ${this.colouring}`;
-        if (painted !== this.painted) this.bodies.paint(this.poses, this.colouring);
-        this.painted = painted;
-        if (this.followed !== null && this.poses.present[this.followed]) this.camera.moveFollowed(this.placeOf(this.followed));
-    }
+  /** Shows the mix of two frames. */
+  show(a: Frame, b: Frame, share: number): void {
+    this.poses.mix(a, b, share);
+    this.bodies.place(this.poses);
+    this.boxes.update(this.poses);
+    this.contacts.update(a);
+    this.highlight.update(this.poses, this.camera.eye);
+    const painted = `${a.number} ${this.colouring}`;
+    if (painted !== this.painted) this.bodies.paint(this.poses, this.colouring);
+    this.painted = painted;
+    if (this.followed !== null && this.poses.present[this.followed])
+      this.camera.moveFollowed(this.placeOf(this.followed));
+  }
 
-    /** Draws one picture with a share of the screen's pixels. True while the camera still swings and wants another. */
-    draw(share = 1): boolean {
-        const swings = this.camera.update();
-        this.highlight.update(this.poses, this.camera.eye);
-        const { target, distance } = this.camera;
-        const near = target.distanceTo(this.centre) < 2 * this.radius && distance > this.radius;
-        const focus = near ? this.centre : target;
-        this.stage.render(this.camera.eye, share, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
-        return swings;
-    }
+  /** Draws one picture with a share of the screen's pixels. True while the camera still swings and wants another. */
+  draw(share = 1): boolean {
+    const swings = this.camera.update();
+    this.highlight.update(this.poses, this.camera.eye);
+    const { target, distance } = this.camera;
+    const near = target.distanceTo(this.centre) < 2 * this.radius && distance > this.radius;
+    const focus = near ? this.centre : target;
+    this.stage.render(this.camera.eye, share, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
+    return swings;
+  }
 
-    get isCoarse(): boolean {
-        return this.stage.isCoarse;
-    }
+  get isCoarse(): boolean {
+    return this.stage.isCoarse;
+  }
 
-    set showsBoxes(on: boolean) {
-        this.boxes.object.visible = on;
-        this.boxes.update(this.poses);
-    }
-    set showsContacts(on: boolean) {
-        this.contacts.group.visible = on;
-        if (this.poses.frame) this.contacts.update(this.poses.frame);
-    }
+  set showsBoxes(on: boolean) {
+    this.boxes.object.visible = on;
+    this.boxes.update(this.poses);
+  }
+  set showsContacts(on: boolean) {
+    this.contacts.group.visible = on;
+    if (this.poses.frame) this.contacts.update(this.poses.frame);
+  }
 
-    /** The body under a point of the window, in CSS pixels; null: none, or the ground. */
-    pickAt(x: number, y: number): Picked | null {
-        const ray = this.camera.ray((2 * x) / this.width - 1, 1 - (2 * y) / this.height);
-        const origin = ray.origin.map((c, i) => c + this.origin[i]) as Vec3;
-        const picked = pick(this.tables, this.poses, { origin, direction: ray.direction });
-        if (!picked) return null;
-        return this.tables.shapes[this.tables.colliders[picked.collider].shape].kind === "half-space" ? null : picked;
-    }
-    select(row: number | null): void {
-        this.picked = row;
-        this.highlight.show(row);
-        this.highlight.update(this.poses, this.camera.eye);
-    }
-    get selected(): number | null {
-        return this.picked;
-    }
-    /** Lets the camera go along with a body; null: stays. */
-    follow(row: number | null): void {
-        this.followed = row;
-        this.camera.follow(row === null ? null : this.placeOf(row));
-    }
+  /** The body under a point of the window, in CSS pixels; null: none, or the ground. */
+  pickAt(x: number, y: number): Picked | null {
+    const ray = this.camera.ray((2 * x) / this.width - 1, 1 - (2 * y) / this.height);
+    const origin = ray.origin.map((c, i) => c + this.origin[i]) as Vec3;
+    const picked = pick(this.tables, this.poses, { origin, direction: ray.direction });
+    if (!picked) return null;
+    return this.tables.shapes[this.tables.colliders[picked.collider].shape].kind === "half-space" ? null : picked;
+  }
+  select(row: number | null): void {
+    this.picked = row;
+    this.highlight.show(row);
+    this.highlight.update(this.poses, this.camera.eye);
+  }
+  get selected(): number | null {
+    return this.picked;
+  }
+  /** Lets the camera go along with a body; null: stays. */
+  follow(row: number | null): void {
+    this.followed = row;
+    this.camera.follow(row === null ? null : this.placeOf(row));
+  }
 
-    /** Where a point of the world is in the window, in CSS pixels. */
-    project(point: Vec3): { x: number; y: number } {
-        const at = new Vector3(...point).sub(new Vector3(...this.origin));
-        this.camera.eye.updateMatrixWorld();
-        at.project(this.camera.eye);
-        return { x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height };
-    }
+  /** Where a point of the world is in the window, in CSS pixels. */
+  project(point: Vec3): { x: number; y: number } {
+    const at = new Vector3(...point).sub(new Vector3(...this.origin));
+    this.camera.eye.updateMatrixWorld();
+    at.project(this.camera.eye);
+    return { x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height };
+  }
 
-    private placeOf(row: number): Vector3 {
-        return new Vector3().fromArray(this.poses.positions, 3 * row).sub(new Vector3(...this.origin));
-    }
+  private placeOf(row: number): Vector3 {
+    return new Vector3().fromArray(this.poses.positions, 3 * row).sub(new Vector3(...this.origin));
+  }
 
-    /** Solid ground for each half-space of a static body; lines in the air under a scene that has none. */
-    private addGround(bounds: Bounds): void {
-        const cell = 10 ** Math.max(-1, Math.round(Math.log10(this.radius / 8)));
-        const { tables, poses } = this;
-        let found = false;
-        for (const { body, shape, pose } of tables.colliders) {
-            if (tables.shapes[shape].kind !== "half-space" || !poses.present[body]) continue;
-            const world = combine(
-                {
-                    position: Array.from(poses.positions.subarray(3 * body, 3 * body + 3)) as Vec3,
-                    rotation: Array.from(poses.rotations.subarray(4 * body, 4 * body + 4)) as [number, number, number, number],
-                },
-                pose,
-            );
-            found = true;
-            const turn = new Quaternion(...world.rotation);
-            const up = new Vector3(0, 1, 0).applyQuaternion(turn);
-            const at = new Vector3(...world.position).sub(new Vector3(...this.origin));
-            // the plane is endless: draw it round the point next to the scene, so that its grid stays fine
-            const near = this.centre.clone().addScaledVector(up, -this.centre.clone().sub(at).dot(up));
-            const snapped = at.add(near.sub(at).multiplyScalar(1 / (10 * cell)).round().multiplyScalar(10 * cell).projectOnPlane(up));
-            this.stage.add(makeGround(new Matrix4().compose(snapped, turn, new Vector3(1, 1, 1)), true, cell, 2.5 * this.radius));
-        }
-        if (found) return;
-        const low = new Vector3(0, bounds.lo[1] - this.origin[1] - 0.002 * this.radius, 0);
-        this.stage.add(makeGround(new Matrix4().makeTranslation(low), false, cell, 2.5 * this.radius));
+  /** Solid ground for each half-space of a static body; lines in the air under a scene that has none. */
+  private addGround(bounds: Bounds): void {
+    const cell = 10 ** Math.max(-1, Math.round(Math.log10(this.radius / 8)));
+    const { tables, poses } = this;
+    let found = false;
+    for (const { body, shape, pose } of tables.colliders) {
+      if (tables.shapes[shape].kind !== "half-space" || !poses.present[body]) continue;
+      const world = combine(
+        {
+          position: Array.from(poses.positions.subarray(3 * body, 3 * body + 3)) as Vec3,
+          rotation: Array.from(poses.rotations.subarray(4 * body, 4 * body + 4)) as [number, number, number, number],
+        },
+        pose,
+      );
+      found = true;
+      const turn = new Quaternion(...world.rotation);
+      const up = new Vector3(0, 1, 0).applyQuaternion(turn);
+      const at = new Vector3(...world.position).sub(new Vector3(...this.origin));
+      // the plane is endless: draw it round the point next to the scene, so that its grid stays fine
+      const near = this.centre.clone().addScaledVector(up, -this.centre.clone().sub(at).dot(up));
+      const snapped = at.add(
+        near
+          .sub(at)
+          .multiplyScalar(1 / (10 * cell))
+          .round()
+          .multiplyScalar(10 * cell)
+          .projectOnPlane(up),
+      );
+      this.stage.add(
+        makeGround(new Matrix4().compose(snapped, turn, new Vector3(1, 1, 1)), true, cell, 2.5 * this.radius),
+      );
     }
+    if (found) return;
+    const low = new Vector3(0, bounds.lo[1] - this.origin[1] - 0.002 * this.radius, 0);
+    this.stage.add(makeGround(new Matrix4().makeTranslation(low), false, cell, 2.5 * this.radius));
+  }
 }

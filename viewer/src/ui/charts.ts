@@ -12,75 +12,78 @@ export const inWords = (name: string): string => name.replaceAll("_", " ");
 const thousands = (value: number): string => value.toLocaleString("en-GB");
 
 export class Charts {
-    readonly summaries: Summary[] = [];
-    private readonly stages: Series[];
-    private readonly counts: Series[];
-    /** index of each line's counter */
-    private readonly counters: number[];
-    private readonly charts: Chart[];
-    private readonly tip = byId("tip");
-    private used = 0;
+  readonly summaries: Summary[] = [];
+  private readonly stages: Series[];
+  private readonly counts: Series[];
+  /** index of each line's counter */
+  private readonly counters: number[];
+  private readonly charts: Chart[];
+  private readonly tip = byId("tip");
+  private used = 0;
 
-    constructor(private readonly tables: Tables, frameCount: number, seek: (frame: number) => void) {
-        const { stageNames, counterNames } = tables;
-        this.stages = stageNames.map((name, i) => ({ name, colour: colours[i % colours.length], values: [] }));
-        const wanted = preferred.map((name) => counterNames.indexOf(name)).filter((index) => index >= 0);
-        this.counters = (wanted.length ? wanted : counterNames.map((_, i) => i)).slice(0, mostLines);
-        this.counts = this.counters.map((counter, i) => ({ name: counterNames[counter], colour: colours[i], values: [] }));
-        const on = { seek, hover: (frame: number | null, x: number, y: number) => this.readOut(frame, x, y) };
-        this.charts = [
-            new Chart(byId<HTMLCanvasElement>("chart-times"), "stacked", this.stages, frameCount, on),
-            new Chart(byId<HTMLCanvasElement>("chart-counts"), "lines", this.counts, frameCount, on),
-        ];
-    }
+  constructor(
+    private readonly tables: Tables,
+    frameCount: number,
+    seek: (frame: number) => void,
+  ) {
+    const { stageNames, counterNames } = tables;
+    this.stages = stageNames.map((name, i) => ({ name, colour: colours[i % colours.length], values: [] }));
+    const wanted = preferred.map((name) => counterNames.indexOf(name)).filter((index) => index >= 0);
+    this.counters = (wanted.length ? wanted : counterNames.map((_, i) => i)).slice(0, mostLines);
+    this.counts = this.counters.map((counter, i) => ({ name: counterNames[counter], colour: colours[i], values: [] }));
+    const on = { seek, hover: (frame: number | null, x: number, y: number) => this.readOut(frame, x, y) };
+    this.charts = [
+      new Chart(byId<HTMLCanvasElement>("chart-times"), "stacked", this.stages, frameCount, on),
+      new Chart(byId<HTMLCanvasElement>("chart-counts"), "lines", this.counts, frameCount, on),
+    ];
+  }
 
-    /** Takes over summaries that came since the last call. */
-    take(): void {
-        if (this.used === this.summaries.length) return;
-        for (; this.used < this.summaries.length; ++this.used) {
-            const { stages, counters } = this.summaries[this.used];
-            this.stages.forEach((series, i) => series.values.push(stages[i]));
-            this.counts.forEach((series, i) => series.values.push(counters[this.counters[i]]));
-        }
-        this.resize();
+  /** Takes over summaries that came since the last call. */
+  take(): void {
+    if (this.used === this.summaries.length) return;
+    for (; this.used < this.summaries.length; ++this.used) {
+      const { stages, counters } = this.summaries[this.used];
+      this.stages.forEach((series, i) => series.values.push(stages[i]));
+      this.counts.forEach((series, i) => series.values.push(counters[this.counters[i]]));
     }
+    this.resize();
+  }
 
-    resize(): void {
-        for (const chart of this.charts) chart.refresh();
-    }
+  resize(): void {
+    for (const chart of this.charts) chart.refresh();
+  }
 
-    draw(frame: number): void {
-        for (const chart of this.charts) chart.draw(frame);
-        const summary = this.summaries[frame];
-        const total = summary ? `${round(summary.total)} ms` : "";
-        byId("legend-times").replaceChildren(
-            make("b", total ? `step ${total}` : "stage times"),
-            ...this.stages.map(({ name, colour, values }) =>
-                legendKey(colour, inWords(name), values[frame] === undefined ? "" : round(values[frame])),
-            ),
-        );
-        byId("legend-counts").replaceChildren(
-            ...this.counts.map(({ name, colour, values }) =>
-                legendKey(colour, inWords(name), values[frame] === undefined ? "" : thousands(values[frame])),
-            ),
-        );
-    }
+  draw(frame: number): void {
+    for (const chart of this.charts) chart.draw(frame);
+    const summary = this.summaries[frame];
+    byId("legend-times").replaceChildren(
+      make("b", `step ${summary ? round(summary.total) : "–"} ms`),
+      ...this.stages.map(({ name, colour, values }) =>
+        legendKey(colour, inWords(name), values[frame] === undefined ? "–" : round(values[frame])),
+      ),
+    );
+    byId("legend-counts").replaceChildren(
+      ...this.counts.map(({ name, colour, values }) =>
+        legendKey(colour, inWords(name), values[frame] === undefined ? "–" : thousands(values[frame])),
+      ),
+    );
+  }
 
-    private readOut(frame: number | null, x: number, y: number): void {
-        const summary = frame === null ? undefined : this.summaries[frame];
-        this.tip.hidden = !summary;
-        if (!summary) return;
-        const rows: [string, string][] = [
-            ["step", `${round(summary.total)} ms`],
-            ...this.stages.map(({ name }, i): [string, string] => [inWords(name), `${round(summary.stages[i])} ms`]),
-            ...this.tables.counterNames.map((name, i): [string, string] => [inWords(name), thousands(summary.counters[i])]),
-        ];
-        this.tip.replaceChildren(
-            make("b", `frame ${frame}, ${summary.time.toFixed(2)} s`),
-            ...rows.flatMap(([name, value]) => [make("span", name), make("span", value)]),
-        );
-        const { width, height } = this.tip.getBoundingClientRect();
-        this.tip.style.left = `${Math.max(8, Math.min(window.innerWidth - width - 8, x + 14))}px`;
-        this.tip.style.top = `${Math.max(8, Math.min(window.innerHeight - height - 8, y - height - 14))}px`;
-    }
+  private readOut(frame: number | null, x: number, y: number): void {
+    const summary = frame === null ? undefined : this.summaries[frame];
+    this.tip.hidden = !summary;
+    if (!summary) return;
+    const rows: [string, string][] = [
+      ["step", `${round(summary.total)} ms`],
+      ...this.stages.map(({ name }, i): [string, string] => [inWords(name), `${round(summary.stages[i])} ms`]),
+      ...this.tables.counterNames.map((name, i): [string, string] => [inWords(name), thousands(summary.counters[i])]),
+    ];
+    this.tip.replaceChildren(
+      make("b", `frame ${frame}, ${summary.time.toFixed(2)} s`),
+      ...rows.flatMap(([name, value]) => [make("span", name), make("span", value)]),
+    );
+    const { width, height } = this.tip.getBoundingClientRect();
+    this.tip.style.left = `${Math.max(8, Math.min(window.innerWidth - width - 8, x + 14))}px`;
+    this.tip.style.top = `${Math.max(8, Math.min(window.innerHeight - height - 8, y - height - 14))}px`;
+  }
 }

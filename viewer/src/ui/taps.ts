@@ -5,16 +5,16 @@ const mostMs = 600;
 
 /** Calls `act` with the window coordinates of each click or tap of one pointer that stayed in its place. */
 export function listenToTaps(element: HTMLElement, act: (x: number, y: number) => void): void {
-    let down: { id: number; x: number; y: number; time: number } | null = null;
-    element.addEventListener("pointerdown", (event) => {
-        const isFirst = event.isPrimary && event.button === 0;
-        down = isFirst ? { id: event.pointerId, x: event.clientX, y: event.clientY, time: event.timeStamp } : null;
-    });
-    element.addEventListener("pointerup", (event) => {
-        if (!down || event.pointerId !== down.id) return;
-        const moved = Math.hypot(event.clientX - down.x, event.clientY - down.y);
-        if (moved <= mostPixels && event.timeStamp - down.time <= mostMs) act(event.clientX, event.clientY);
-        down = null;
-    });
-    element.addEventListener("pointercancel", () => (down = null));
+  let down: { id: number; x: number; y: number; time: number } | null = null;
+  element.addEventListener("pointerdown", (event) => {
+    const isFirst = event.isPrimary && event.button === 0;
+    down = isFirst ? { id: event.pointerId, x: event.clientX, y: event.clientY, time: event.timeStamp } : null;
+  });
+  element.addEventListener("pointerup", (event) => {
+    if (!down || event.pointerId !== down.id) return;
+    const moved = Math.hypot(event.clientX - down.x, event.clientY - down.y);
+    if (moved <= mostPixels && event.timeStamp - down.time <= mostMs) act(event.clientX, event.clientY);
+    down = null;
+  });
+  element.addEventListener("pointercancel", () => (down = null));
 }

@@ -16,356 +16,403 @@ const fixture = makeFixture({ frames: 240 }).file;
 
 const frameOf = (page: Page) => page.evaluate(() => Number(document.documentElement.dataset.frame));
 const waitForFrame = (page: Page, frame: number) =>
-    page.waitForFunction((wanted) => document.documentElement.dataset.frame === String(wanted), frame, { timeout: 30_000 });
+  page.waitForFunction((wanted) => document.documentElement.dataset.frame === String(wanted), frame, {
+    timeout: 30_000,
+  });
 const text = (page: Page, selector: string) => page.locator(selector).innerText();
 
 /** The canvas as the browser shows it: red, green, blue of every fourth pixel in each direction. */
 async function pixels(page: Page): Promise<number[]> {
-    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-    await page.waitForSelector("html[data-still=true]", { timeout: 60_000 });
-    const png = (await page.screenshot({ animations: "disabled" })).toString("base64");
-    return page.evaluate(async (base64) => {
-        const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-        const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-        const canvas = new OffscreenCanvas(image.width / 4, image.height / 4);
-        const context = canvas.getContext("2d") as OffscreenCanvasRenderingContext2D;
-        context.drawImage(image, 0, 0, canvas.width, canvas.height);
-        return Array.from(context.getImageData(0, 0, canvas.width, canvas.height).data).filter((_, i) => i % 4 !== 3);
-    }, png);
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  await page.waitForSelector("html[data-still=true]", { timeout: 60_000 });
+  const png = (await page.screenshot({ animations: "disabled" })).toString("base64");
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(image.width / 4, image.height / 4);
+    const context = canvas.getContext("2d") as OffscreenCanvasRenderingContext2D;
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    return Array.from(context.getImageData(0, 0, canvas.width, canvas.height).data).filter((_, i) => i % 4 !== 3);
+  }, png);
 }
 function changed(a: number[], b: number[]): number {
-    let count = 0;
-    for (let i = 0; i < a.length; i += 3)
-        if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 12) ++count;
-    return count / (a.length / 3);
+  let count = 0;
+  for (let i = 0; i < a.length; i += 3)
+    if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 12) ++count;
+  return count / (a.length / 3);
 }
 
 /** Where a body is in the window. */
 const placeOf = (page: Page, name: string) =>
-    page.evaluate((wanted) => {
-        const { recording, view } = (window as unknown as { fase: { recording: Recording; view: { poses: { positions: Float64Array }; project(p: number[]): { x: number; y: number } } } }).fase;
-        const row = recording.tables.bodies.findIndex((body) => body.name === wanted);
-        return view.project([...view.poses.positions.subarray(3 * row, 3 * row + 3)]);
-    }, name);
+  page.evaluate((wanted) => {
+    const { recording, view } = (
+      window as unknown as {
+        fase: {
+          recording: Recording;
+          view: { poses: { positions: Float64Array }; project(p: number[]): { x: number; y: number } };
+        };
+      }
+    ).fase;
+    const row = recording.tables.bodies.findIndex((body) => body.name === wanted);
+    return view.project([...view.poses.positions.subarray(3 * row, 3 * row + 3)]);
+  }, name);
 
 describe("the viewer in a browser", { skip }, () => {
-    let browser: Browser;
-    let server: PageServer;
-    let built: ReturnType<typeof buildPage>;
-    const opened: Visit[] = [];
+  let browser: Browser;
+  let server: PageServer;
+  let built: ReturnType<typeof buildPage>;
+  const opened: Visit[] = [];
 
-    before(async () => {
-        built = buildPage();
-        server = await PageServer.start(built.folder);
-        browser = await launch();
-    });
-    after(async () => {
-        await browser?.close();
-        server?.stop();
-        built?.remove();
-    });
+  before(async () => {
+    built = buildPage();
+    server = await PageServer.start(built.folder);
+    browser = await launch();
+  });
+  after(async () => {
+    await browser?.close();
+    server?.stop();
+    built?.remove();
+  });
 
-    /** A page with panels hidden shows more of the scene; all pages must be free of complaints at their end. */
-    async function open(options: { file?: Uint8Array | null; hash?: string; context?: BrowserContextOptions } = {}): Promise<Visit> {
-        server.recording = options.file === undefined ? fixture : options.file;
-        const visited = await visit(browser, server.url + (options.hash ?? ""), options.context);
-        opened.push(visited);
-        return visited;
+  /** A page with panels hidden shows more of the scene; all pages must be free of complaints at their end. */
+  async function open(
+    options: { file?: Uint8Array | null; hash?: string; context?: BrowserContextOptions } = {},
+  ): Promise<Visit> {
+    server.recording = options.file === undefined ? fixture : options.file;
+    const visited = await visit(browser, server.url + (options.hash ?? ""), options.context);
+    opened.push(visited);
+    return visited;
+  }
+  async function finish(visited: Visit): Promise<void> {
+    await visited.close();
+    assert.deepEqual(visited.complaints, []);
+  }
+
+  test("a recording loads without complaints and its picture is not blank", async () => {
+    const visited = await open({ hash: "#f=90" });
+    const { page } = visited;
+    assert.equal(await page.getAttribute("html", "data-state"), "ready");
+    assert.match(await page.title(), /test wall/);
+    assert.match(await text(page, "#summary"), /bodies, \d+ awake/);
+    const seen = await pixels(page);
+    const colours = new Set<number>();
+    for (let i = 0; i < seen.length; i += 3)
+      colours.add((seen[i] >> 4) * 256 + (seen[i + 1] >> 4) * 16 + (seen[i + 2] >> 4));
+    assert.ok(colours.size > 60, `${colours.size} colours`);
+    await keepPicture(page, "wall");
+    await finish(visited);
+  });
+
+  test("play runs, pause holds, and the picture moves", async () => {
+    const visited = await open({ hash: "#f=60" });
+    const { page } = visited;
+    const still = await pixels(page);
+    await page.click("#play");
+    await page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 66, null, { timeout: 30_000 });
+    assert.equal(await page.getAttribute("#play", "aria-label"), "Pause");
+    await page.click("#play");
+    const paused = await frameOf(page);
+    await page.waitForTimeout(300);
+    assert.equal(await frameOf(page), paused);
+    assert.ok(changed(still, await pixels(page)) > 0.001);
+    await finish(visited);
+  });
+
+  test("a page without a frame in its address begins to play, unless the visitor wants no motion", async () => {
+    const moving = await open();
+    await moving.page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 2, null, {
+      timeout: 30_000,
+    });
+    await finish(moving);
+    const calm = await open({ context: { reducedMotion: "reduce" } });
+    await pixels(calm.page);
+    assert.equal(await frameOf(calm.page), 0);
+    await finish(calm);
+  });
+
+  test("steps, keys and the scrub bar go where they say", async () => {
+    const visited = await open({ hash: "#f=10" });
+    const { page } = visited;
+    await waitForFrame(page, 10);
+    await page.click("#forward");
+    await waitForFrame(page, 11);
+    await page.click("#back");
+    await page.click("#back");
+    await waitForFrame(page, 9);
+    await page.keyboard.press("ArrowRight");
+    await waitForFrame(page, 10);
+    await page.keyboard.press("Shift+ArrowRight");
+    await waitForFrame(page, 70);
+    await page.keyboard.press("End");
+    await waitForFrame(page, 239);
+    assert.ok(await page.isDisabled("#forward"));
+    await page.keyboard.press("Home");
+    await waitForFrame(page, 0);
+    await page.keyboard.press("+");
+    await page.waitForFunction(() => (document.getElementById("speed") as HTMLSelectElement).value === "2");
+    const bar = await page.locator("#scrub").boundingBox();
+    assert.ok(bar);
+    await page.mouse.click(bar.x + bar.width / 2, bar.y + bar.height / 2);
+    await page.waitForFunction(() => Math.abs(Number(document.documentElement.dataset.frame) - 119) < 8);
+    const speed = await page.inputValue("#speed");
+    await page.selectOption("#speed", "0.1");
+    assert.equal(speed, "2");
+    await page.locator("#scene").focus();
+    await page.keyboard.press(" ");
+    await page.waitForFunction(() => document.getElementById("play")?.getAttribute("aria-label") === "Pause");
+    await page.keyboard.press(" ");
+    await finish(visited);
+  });
+
+  test("colours, world boxes and contact points change the picture and change it back", async () => {
+    const visited = await open({ hash: "#f=95" });
+    const { page } = visited;
+    const plain = await pixels(page);
+    const pictures = [plain];
+    for (const by of ["kind", "island", "sleep"]) {
+      await page.selectOption("#colours", by);
+      const now = await pixels(page);
+      for (const other of pictures) assert.ok(changed(other, now) > 0.004, by);
+      pictures.push(now);
+      await keepPicture(page, `colours-${by}`);
     }
-    async function finish(visited: Visit): Promise<void> {
-        await visited.close();
-        assert.deepEqual(visited.complaints, []);
+    await page.selectOption("#colours", "material");
+    for (const id of ["boxes", "contacts"]) {
+      const before = await pixels(page);
+      await page.click(`#${id}`);
+      assert.equal(await page.getAttribute(`#${id}`, "aria-pressed"), "true");
+      const on = await pixels(page);
+      assert.ok(changed(before, on) > 0.0005, id);
+      await keepPicture(page, id);
+      await page.click(`#${id}`);
+      await page.mouse.move(500, 300);
+      assert.ok(changed(before, await pixels(page)) < 0.002, id);
     }
+    await finish(visited);
+  });
 
-    test("a recording loads without complaints and its picture is not blank", async () => {
-        const visited = await open({ hash: "#f=90" });
-        const { page } = visited;
-        assert.equal(await page.getAttribute("html", "data-state"), "ready");
-        assert.match(await page.title(), /test wall/);
-        assert.match(await text(page, "#summary"), /bodies, \d+ awake/);
-        const seen = await pixels(page);
-        const colours = new Set<number>();
-        for (let i = 0; i < seen.length; i += 3) colours.add((seen[i] >> 4) * 256 + (seen[i + 1] >> 4) * 16 + (seen[i + 2] >> 4));
-        assert.ok(colours.size > 60, `${colours.size} colours`);
-        await keepPicture(page, "wall");
-        await finish(visited);
-    });
+  test("a click picks a body, its panel reads its state, and the camera follows it", async () => {
+    const visited = await open({ hash: "#f=20" });
+    const { page } = visited;
+    await waitForFrame(page, 20);
+    const { x, y } = await placeOf(page, "ball");
+    await page.mouse.click(x, y);
+    await page.waitForSelector("#body:not([hidden])");
+    assert.equal(await text(page, "#body-name"), "ball");
+    const state = await text(page, "#body-state");
+    for (const words of ["dynamic", "awake", "sphere r 0.6 m", "1099511627777", "m/s", "100 kg"])
+      assert.ok(state.includes(words), words);
+    await keepPicture(page, "picked");
+    await page.keyboard.press("f");
+    for (let i = 0; i < 20; ++i) await page.keyboard.press("ArrowRight");
+    await waitForFrame(page, 40);
+    await pixels(page);
+    const followed = await placeOf(page, "ball");
+    assert.ok(Math.hypot(followed.x - x, followed.y - y) < 3, "it stays where it is in the window");
+    await keepPicture(page, "followed");
+    await page.keyboard.press("Escape");
+    await page.waitForSelector("#body", { state: "hidden" });
+    await finish(visited);
+  });
 
-    test("play runs, pause holds, and the picture moves", async () => {
-        const visited = await open({ hash: "#f=60" });
-        const { page } = visited;
-        const still = await pixels(page);
-        await page.click("#play");
-        await page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 66, null, { timeout: 30_000 });
-        assert.equal(await page.getAttribute("#play", "aria-label"), "Pause");
-        await page.click("#play");
-        const paused = await frameOf(page);
-        await page.waitForTimeout(300);
-        assert.equal(await frameOf(page), paused);
-        assert.ok(changed(still, await pixels(page)) > 0.001);
-        await finish(visited);
-    });
+  test("dragging turns the camera, the wheel zooms, and the address keeps both and the frame", async () => {
+    const visited = await open({ hash: "#f=30" });
+    const { page } = visited;
+    const before = await pixels(page);
+    await page.mouse.move(500, 250);
+    await page.mouse.down();
+    await page.mouse.move(640, 280, { steps: 5 });
+    await page.mouse.up();
+    await page.mouse.wheel(0, -400);
+    const turned = await pixels(page);
+    assert.ok(changed(before, turned) > 0.02);
+    assert.equal(await page.isVisible("#body"), false, "a drag is not a click");
+    await page.waitForFunction(() => location.hash.includes("c="));
+    const again = await open({ hash: await page.evaluate(() => location.hash) });
+    assert.equal(await frameOf(again.page), 30);
+    assert.ok(changed(turned, await pixels(again.page)) < 0.01);
+    await page.keyboard.press("r");
+    assert.ok(changed(before, await pixels(page)) < 0.01, "r shows everything as at first");
+    await finish(again);
+    await finish(visited);
+  });
 
-    test("a page without a frame in its address begins to play, unless the visitor wants no motion", async () => {
-        const moving = await open();
-        await moving.page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 2, null, { timeout: 30_000 });
-        await finish(moving);
-        const calm = await open({ context: { reducedMotion: "reduce" } });
-        await pixels(calm.page);
-        assert.equal(await frameOf(calm.page), 0);
-        await finish(calm);
-    });
+  test("charts read out the frame under the pointer and take you there", async () => {
+    const visited = await open({ hash: "#f=0" });
+    const { page } = visited;
+    const box = await page.locator("#chart-times").boundingBox();
+    assert.ok(box);
+    await page.waitForFunction(() => document.querySelectorAll("#legend-times .key b").length > 0);
+    await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+    await page.waitForSelector("#tip:not([hidden])");
+    const tip = await text(page, "#tip");
+    for (const words of ["solve", "contact points"]) assert.ok(tip.includes(words), words);
+    const frame = Number(/frame (\d+)/.exec(tip)?.[1]);
+    assert.ok(Math.abs(frame - 60) <= 1, `frame ${frame}`);
+    await keepPicture(page, "chart");
+    await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+    await waitForFrame(page, frame);
+    await page.keyboard.press("g");
+    assert.equal(await page.isVisible("#charts"), false);
+    await finish(visited);
+  });
 
-    test("steps, keys and the scrub bar go where they say", async () => {
-        const visited = await open({ hash: "#f=10" });
-        const { page } = visited;
-        await waitForFrame(page, 10);
-        await page.click("#forward");
-        await waitForFrame(page, 11);
-        await page.click("#back");
-        await page.click("#back");
-        await waitForFrame(page, 9);
-        await page.keyboard.press("ArrowRight");
-        await waitForFrame(page, 10);
-        await page.keyboard.press("Shift+ArrowRight");
-        await waitForFrame(page, 70);
-        await page.keyboard.press("End");
-        await waitForFrame(page, 239);
-        assert.ok(await page.isDisabled("#forward"));
-        await page.keyboard.press("Home");
-        await waitForFrame(page, 0);
-        await page.keyboard.press("+");
-        await page.waitForFunction(() => (document.getElementById("speed") as HTMLSelectElement).value === "2");
-        const bar = await page.locator("#scrub").boundingBox();
-        assert.ok(bar);
-        await page.mouse.click(bar.x + bar.width / 2, bar.y + bar.height / 2);
-        await page.waitForFunction(() => Math.abs(Number(document.documentElement.dataset.frame) - 119) < 8);
-        const speed = await page.inputValue("#speed");
-        await page.selectOption("#speed", "0.1");
-        assert.equal(speed, "2");
-        await page.locator("#scene").focus();
-        await page.keyboard.press(" ");
-        await page.waitForFunction(() => document.getElementById("play")?.getAttribute("aria-label") === "Pause");
-        await page.keyboard.press(" ");
-        await finish(visited);
-    });
+  test("panels hide and come back; help opens and closes", async () => {
+    const visited = await open({ hash: "#f=200" });
+    const { page } = visited;
+    await page.keyboard.press("h");
+    for (const id of ["head", "tools", "dock"]) assert.equal(await page.isVisible(`#${id}`), false);
+    await keepPicture(page, "bare");
+    await page.click("#show-panels");
+    assert.ok(await page.isVisible("#dock"));
+    await page.keyboard.press("?");
+    assert.ok(await page.isVisible("#help"));
+    await keepPicture(page, "help");
+    await page.keyboard.press("Escape");
+    assert.equal(await page.isVisible("#help"), false);
+    await finish(visited);
+  });
 
-    test("colours, world boxes and contact points change the picture and change it back", async () => {
-        const visited = await open({ hash: "#f=95" });
-        const { page } = visited;
-        const plain = await pixels(page);
-        const pictures = [plain];
-        for (const by of ["kind", "island", "sleep"]) {
-            await page.selectOption("#colours", by);
-            const now = await pixels(page);
-            for (const other of pictures) assert.ok(changed(other, now) > 0.004, by);
-            pictures.push(now);
-            await keepPicture(page, `colours-${by}`);
-        }
-        await page.selectOption("#colours", "material");
-        for (const id of ["boxes", "contacts"]) {
-            const before = await pixels(page);
-            await page.click(`#${id}`);
-            assert.equal(await page.getAttribute(`#${id}`, "aria-pressed"), "true");
-            const on = await pixels(page);
-            assert.ok(changed(before, on) > 0.0005, id);
-            await keepPicture(page, id);
-            await page.click(`#${id}`);
-            await page.mouse.move(500, 300);
-            assert.ok(changed(before, await pixels(page)) < 0.002, id);
-        }
-        await finish(visited);
-    });
+  test("on a phone all controls fit, a tap picks, a finger turns, two fingers zoom", async () => {
+    const context: BrowserContextOptions = {
+      viewport: { width: 390, height: 780 },
+      hasTouch: true,
+      isMobile: true,
+      deviceScaleFactor: 2,
+    };
+    const visited = await open({ hash: "#f=20", context });
+    const { page } = visited;
+    await waitForFrame(page, 20);
+    for (const id of ["head", "tools", "dock", "play", "scrub", "speed", "help-open"]) {
+      const box = await page.locator(`#${id}`).boundingBox();
+      assert.ok(box && box.x >= 0 && box.y >= 0 && box.x + box.width <= 390 && box.y + box.height <= 780, id);
+    }
+    await keepPicture(page, "phone");
+    const { x, y } = await placeOf(page, "ball");
+    await page.touchscreen.tap(x, y);
+    await page.waitForSelector("#body:not([hidden])");
+    assert.equal(await text(page, "#body-name"), "ball");
+    await keepPicture(page, "phone-picked");
+    await page.tap("#body-close");
+    const before = await pixels(page);
+    const session = await page.context().newCDPSession(page);
+    const touch = (type: string, points: [number, number][]) =>
+      session.send("Input.dispatchTouchEvent", {
+        type: type as "touchStart",
+        touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })),
+      });
+    await touch("touchStart", [[150, 250]]);
+    for (let i = 1; i <= 6; ++i) await touch("touchMove", [[150 + 15 * i, 250]]);
+    await touch("touchEnd", []);
+    const turned = await pixels(page);
+    assert.ok(changed(before, turned) > 0.02, "one finger turns");
+    await touch("touchStart", [
+      [180, 260],
+      [210, 260],
+    ]);
+    for (let i = 1; i <= 6; ++i)
+      await touch("touchMove", [
+        [180 - 12 * i, 260],
+        [210 + 12 * i, 260],
+      ]);
+    await touch("touchEnd", []);
+    assert.ok(changed(turned, await pixels(page)) > 0.05, "two fingers zoom");
+    await finish(visited);
+  });
 
-    test("a click picks a body, its panel reads its state, and the camera follows it", async () => {
-        const visited = await open({ hash: "#f=20" });
-        const { page } = visited;
-        await waitForFrame(page, 20);
-        const { x, y } = await placeOf(page, "ball");
-        await page.mouse.click(x, y);
-        await page.waitForSelector("#body:not([hidden])");
-        assert.equal(await text(page, "#body-name"), "ball");
-        const state = await text(page, "#body-state");
-        for (const words of ["dynamic", "awake", "sphere r 0.6 m", "1099511627777", "m/s", "100 kg"]) assert.ok(state.includes(words), words);
-        await keepPicture(page, "picked");
-        await page.keyboard.press("f");
-        for (let i = 0; i < 20; ++i) await page.keyboard.press("ArrowRight");
-        await waitForFrame(page, 40);
-        await pixels(page);
-        const followed = await placeOf(page, "ball");
-        assert.ok(Math.hypot(followed.x - x, followed.y - y) < 3, "it stays where it is in the window");
-        await keepPicture(page, "followed");
-        await page.keyboard.press("Escape");
-        await page.waitForSelector("#body", { state: "hidden" });
-        await finish(visited);
-    });
+  test("files that are broken, missing, foreign or newer are named in the page", async () => {
+    const cases: [Uint8Array | null, RegExp][] = [
+      [fixture.subarray(0, 100), /no HEAD|inside a chunk/],
+      [new TextEncoder().encode('{"asset": {"version": "2.0"}}'), /not a Fase recording/],
+      [fileHeader(9), /version 9, this viewer reads 1/],
+      [new Uint8Array(0), /empty|404/],
+      [join(fileHeader(), chunk("HEAD", new Uint8Array([200]))), /HEAD, byte/],
+      [null, /404/],
+    ];
+    for (const [file, reason] of cases) {
+      const { page, close } = await open({ file });
+      assert.equal(await page.getAttribute("html", "data-state"), "error");
+      assert.ok(await page.isVisible("#error"));
+      assert.match(await text(page, "#error-text"), reason);
+      if (file === null) {
+        await keepPicture(page, "error");
+        await page.setInputFiles("#open", {
+          name: "wall.faserec",
+          mimeType: "application/octet-stream",
+          buffer: Buffer.from(fixture),
+        });
+        await page.waitForSelector("html[data-state=ready]");
+        assert.ok(await page.isHidden("#error"));
+      }
+      await close();
+    }
+  });
 
-    test("dragging turns the camera, the wheel zooms, and the address keeps both and the frame", async () => {
-        const visited = await open({ hash: "#f=30" });
-        const { page } = visited;
-        const before = await pixels(page);
-        await page.mouse.move(500, 250);
-        await page.mouse.down();
-        await page.mouse.move(640, 280, { steps: 5 });
-        await page.mouse.up();
-        await page.mouse.wheel(0, -400);
-        const turned = await pixels(page);
-        assert.ok(changed(before, turned) > 0.02);
-        assert.equal(await page.isVisible("#body"), false, "a drag is not a click");
-        await page.waitForFunction(() => location.hash.includes("c="));
-        const again = await open({ hash: await page.evaluate(() => location.hash) });
-        assert.equal(await frameOf(again.page), 30);
-        assert.ok(changed(turned, await pixels(again.page)) < 0.01);
-        await page.keyboard.press("r");
-        assert.ok(changed(before, await pixels(page)) < 0.01, "r shows everything as at first");
-        await finish(again);
-        await finish(visited);
-    });
+  test("a recording without its end plays up to there and says so", async () => {
+    const visited = await open({ file: fixture.subarray(0, Math.floor(fixture.length * 0.7)) });
+    assert.match(await text(visited.page, "#note"), /end of this recording is missing.*\d+ frames/);
+    await visited.page.keyboard.press("End");
+    await visited.page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 60);
+    await finish(visited);
+  });
 
-    test("charts read out the frame under the pointer and take you there", async () => {
-        const visited = await open({ hash: "#f=0" });
-        const { page } = visited;
-        const box = await page.locator("#chart-times").boundingBox();
-        assert.ok(box);
-        await page.waitForFunction(() => document.querySelectorAll("#legend-times .key b").length > 0);
-        await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
-        await page.waitForSelector("#tip:not([hidden])");
-        const tip = await text(page, "#tip");
-        for (const words of ["solve", "contact points"]) assert.ok(tip.includes(words), words);
-        const frame = Number(/frame (\d+)/.exec(tip)?.[1]);
-        assert.ok(Math.abs(frame - 60) <= 1, `frame ${frame}`);
-        await keepPicture(page, "chart");
-        await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+  test("without WebGL the page says what is missing", async () => {
+    const blind = await launch(["--disable-3d-apis"]);
+    server.recording = fixture;
+    const context = await blind.newContext();
+    const page = await context.newPage();
+    await page.goto(server.url);
+    await page.waitForSelector("#error:not([hidden])");
+    assert.match(await text(page, "#error-text"), /WebGL/);
+    await blind.close();
+  });
+
+  test("one page with everything inside plays from a file", async () => {
+    const read = (name: string) => readFileSync(path.join(built.folder, name), "utf8");
+    const recording = Buffer.from(fixture).toString("base64");
+    const html = read("index.html")
+      .replace('<link rel="stylesheet" href="viewer.css">', () => `<style>${read("viewer.css")}</style>`)
+      .replace(
+        '<script src="viewer.js"></script>',
+        () =>
+          `<script id="recording" type="application/octet-stream;base64">${recording}</script>` +
+          `<script>${read("viewer.js")}</script>`,
+      );
+    assert.ok(
+      !/(src|href)="(?!#|data:)/.test(html.replace(/<script>[^]*<\/script>/, "")),
+      "nothing is loaded from elsewhere",
+    );
+    const folder = mkdtempSync(path.join(os.tmpdir(), "fase-viewer-whole-"));
+    const file = path.join(folder, "whole.html");
+    writeFileSync(file, html);
+    const visited = await visit(browser, `file://${file}#f=90`);
+    assert.equal(await visited.page.getAttribute("html", "data-state"), "ready");
+    assert.equal(await frameOf(visited.page), 90);
+    await finish(visited);
+    rmSync(folder, { recursive: true });
+  });
+
+  test(
+    "a recording of the program plays",
+    { skip: real ? false : "skipped: FASE_RECORDING names no recording" },
+    async () => {
+      const file = new Uint8Array(readFileSync(real as string));
+      const last = Recording.openNow(file).frameCount - 1;
+      const visited = await open({ file, hash: "#f=0", context: { viewport: { width: 1280, height: 800 } } });
+      const { page } = visited;
+      await keepPicture(page, "real-first");
+      for (const share of [0.25, 0.5, 1]) {
+        const frame = Math.round(share * last);
+        await page.evaluate((f) => (location.hash = `#f=${f}`), frame);
         await waitForFrame(page, frame);
-        await page.keyboard.press("g");
-        assert.equal(await page.isVisible("#charts"), false);
-        await finish(visited);
-    });
-
-    test("panels hide and come back; help opens and closes", async () => {
-        const visited = await open({ hash: "#f=200" });
-        const { page } = visited;
-        await page.keyboard.press("h");
-        for (const id of ["head", "tools", "dock"]) assert.equal(await page.isVisible(`#${id}`), false);
-        await keepPicture(page, "bare");
-        await page.click("#show-panels");
-        assert.ok(await page.isVisible("#dock"));
-        await page.keyboard.press("?");
-        assert.ok(await page.isVisible("#help"));
-        await keepPicture(page, "help");
-        await page.keyboard.press("Escape");
-        assert.equal(await page.isVisible("#help"), false);
-        await finish(visited);
-    });
-
-    test("on a phone all controls fit, a tap picks, a finger turns, two fingers zoom", async () => {
-        const context: BrowserContextOptions = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
-        const visited = await open({ hash: "#f=20", context });
-        const { page } = visited;
-        await waitForFrame(page, 20);
-        for (const id of ["head", "tools", "dock", "play", "scrub", "speed", "help-open"]) {
-            const box = await page.locator(`#${id}`).boundingBox();
-            assert.ok(box && box.x >= 0 && box.y >= 0 && box.x + box.width <= 390 && box.y + box.height <= 780, id);
-        }
-        await keepPicture(page, "phone");
-        const { x, y } = await placeOf(page, "ball");
-        await page.touchscreen.tap(x, y);
-        await page.waitForSelector("#body:not([hidden])");
-        assert.equal(await text(page, "#body-name"), "ball");
-        await keepPicture(page, "phone-picked");
-        await page.tap("#body-close");
-        const before = await pixels(page);
-        const session = await page.context().newCDPSession(page);
-        const touch = (type: string, points: [number, number][]) =>
-            session.send("Input.dispatchTouchEvent", { type: type as "touchStart", touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
-        await touch("touchStart", [[150, 250]]);
-        for (let i = 1; i <= 6; ++i) await touch("touchMove", [[150 + 15 * i, 250]]);
-        await touch("touchEnd", []);
-        const turned = await pixels(page);
-        assert.ok(changed(before, turned) > 0.02, "one finger turns");
-        await touch("touchStart", [[180, 260], [210, 260]]);
-        for (let i = 1; i <= 6; ++i) await touch("touchMove", [[180 - 12 * i, 260], [210 + 12 * i, 260]]);
-        await touch("touchEnd", []);
-        assert.ok(changed(turned, await pixels(page)) > 0.05, "two fingers zoom");
-        await finish(visited);
-    });
-
-    test("files that are broken, missing, foreign or newer are named in the page", async () => {
-        const cases: [Uint8Array | null, RegExp][] = [
-            [fixture.subarray(0, 100), /no HEAD|inside a chunk/],
-            [new TextEncoder().encode("{\"asset\": {\"version\": \"2.0\"}}"), /not a Fase recording/],
-            [fileHeader(9), /version 9, this viewer reads 1/],
-            [new Uint8Array(0), /empty|404/],
-            [join(fileHeader(), chunk("HEAD", new Uint8Array([200]))), /HEAD, byte/],
-            [null, /404/],
-        ];
-        for (const [file, reason] of cases) {
-            const { page, close } = await open({ file });
-            assert.equal(await page.getAttribute("html", "data-state"), "error");
-            assert.ok(await page.isVisible("#error"));
-            assert.match(await text(page, "#error-text"), reason);
-            if (file === null) {
-                await keepPicture(page, "error");
-                await page.setInputFiles("#open", { name: "wall.faserec", mimeType: "application/octet-stream", buffer: Buffer.from(fixture) });
-                await page.waitForSelector("html[data-state=ready]");
-                assert.ok(await page.isHidden("#error"));
-            }
-            await close();
-        }
-    });
-
-    test("a recording without its end plays up to there and says so", async () => {
-        const visited = await open({ file: fixture.subarray(0, Math.floor(fixture.length * 0.7)) });
-        assert.match(await text(visited.page, "#note"), /end of this recording is missing.*\d+ frames/);
-        await visited.page.keyboard.press("End");
-        await visited.page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 60);
-        await finish(visited);
-    });
-
-    test("without WebGL the page says what is missing", async () => {
-        const blind = await launch(["--disable-3d-apis"]);
-        server.recording = fixture;
-        const context = await blind.newContext();
-        const page = await context.newPage();
-        await page.goto(server.url);
-        await page.waitForSelector("#error:not([hidden])");
-        assert.match(await text(page, "#error-text"), /WebGL/);
-        await blind.close();
-    });
-
-    test("one page with everything inside plays from a file", async () => {
-        const read = (name: string) => readFileSync(path.join(built.folder, name), "utf8");
-        const html = read("index.html")
-            .replace('<link rel="stylesheet" href="viewer.css">', () => `<style>${read("viewer.css")}</style>`)
-            .replace('<script src="viewer.js"></script>', () =>
-                `<script id="recording" type="application/octet-stream">${Buffer.from(fixture).toString("base64")}</script><script>${read("viewer.js")}</script>`,
-            );
-        assert.ok(!/(src|href)="(?!#|data:)/.test(html.replace(/<script>[^]*<\/script>/, "")), "nothing is loaded from elsewhere");
-        const folder = mkdtempSync(path.join(os.tmpdir(), "fase-viewer-whole-"));
-        const file = path.join(folder, "whole.html");
-        writeFileSync(file, html);
-        const visited = await visit(browser, `file://${file}#f=90`);
-        assert.equal(await visited.page.getAttribute("html", "data-state"), "ready");
-        assert.equal(await frameOf(visited.page), 90);
-        await finish(visited);
-        rmSync(folder, { recursive: true });
-    });
-
-    test("a recording of the program plays", { skip: real ? false : "skipped: FASE_RECORDING names no recording" }, async () => {
-        const file = new Uint8Array(readFileSync(real as string));
-        const last = Recording.openNow(file).frameCount - 1;
-        const visited = await open({ file, context: { viewport: { width: 1280, height: 800 } } });
-        const { page } = visited;
-        await keepPicture(page, "real-first");
-        for (const share of [0.25, 0.5, 1]) {
-            const frame = Math.round(share * last);
-            await page.evaluate((f) => (location.hash = `#f=${f}`), frame);
-            await waitForFrame(page, frame);
-            await keepPicture(page, `real-${100 * share}`);
-        }
-        await page.keyboard.press("Home");
-        await page.keyboard.press(" ");
-        await page.waitForFunction((most) => Number(document.documentElement.dataset.frame) >= most, Math.min(10, last), { timeout: 60_000 });
-        await finish(visited);
-    });
+        await keepPicture(page, `real-${100 * share}`);
+      }
+      await page.keyboard.press("Home");
+      await page.keyboard.press(" ");
+      await page.waitForFunction((most) => Number(document.documentElement.dataset.frame) >= most, Math.min(10, last), {
+        timeout: 60_000,
+      });
+      await finish(visited);
+    },
+  );
 });

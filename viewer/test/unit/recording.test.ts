@@ -6,210 +6,291 @@ import { Recording } from "../../src/recording";
 import { finish } from "../../src/format/unpack";
 import type { Frame, Summary } from "../../src/model";
 import { rotate } from "../../src/scene/maths";
-import { bodies, chunk, colliderEnds, colliders, fileHeader, FrameEncoder, head, join, plain, shapes, zstdRaw, type BodyInput, type FrameInput } from "../encode";
+import {
+  bodies,
+  chunk,
+  colliderEnds,
+  colliders,
+  fileHeader,
+  FrameEncoder,
+  head,
+  join,
+  plain,
+  shapes,
+  zstdRaw,
+  type BodyInput,
+  type FrameInput,
+} from "../encode";
 import { type Fixture, makeFixture, quanta } from "../fixtures";
 
 const small = { frames: 100, columns: 8, courses: 6 };
 
 /** Metres and radians by which a decoded body may differ from what was put in. */
 function assertBody(frame: Frame, input: BodyInput): void {
-    const { row } = input;
-    assert.equal(frame.present[row], 1);
-    assert.equal(frame.flags[row], input.flags);
-    assert.equal(frame.islands[row], input.island);
-    for (let i = 0; i < 3; ++i) assert.ok(Math.abs(frame.positions[3 * row + i] - input.position[i]) <= 0.51 / quanta);
-    const q = [...frame.rotations.subarray(4 * row, 4 * row + 4)];
-    const cosine = Math.abs(q.reduce((sum, x, i) => sum + x * input.rotation[i], 0)) / Math.hypot(...input.rotation);
-    assert.ok(2 * Math.acos(Math.min(1, cosine)) < (0.1 * Math.PI) / 180, `row ${row}`);
+  const { row } = input;
+  assert.equal(frame.present[row], 1);
+  assert.equal(frame.flags[row], input.flags);
+  assert.equal(frame.islands[row], input.island);
+  for (let i = 0; i < 3; ++i) assert.ok(Math.abs(frame.positions[3 * row + i] - input.position[i]) <= 0.51 / quanta);
+  const q = [...frame.rotations.subarray(4 * row, 4 * row + 4)];
+  const cosine = Math.abs(q.reduce((sum, x, i) => sum + x * input.rotation[i], 0)) / Math.hypot(...input.rotation);
+  assert.ok(2 * Math.acos(Math.min(1, cosine)) < (0.1 * Math.PI) / 180, `row ${row}`);
 }
 
 function assertFrame(frame: Frame, input: FrameInput): void {
-    assert.equal(frame.step, input.step);
-    assert.equal(frame.time, input.time);
-    assert.equal(frame.present.reduce((sum, x) => sum + x, 0), input.bodies.length);
-    for (const body of input.bodies) assertBody(frame, body);
-    assert.deepEqual(frame.events.contactsBegun, input.contactsBegun ?? []);
-    assert.deepEqual(frame.events.contactsEnded, input.contactsEnded ?? []);
-    assert.deepEqual(frame.events.sensorsBegun, input.sensorsBegun ?? []);
-    assert.deepEqual(frame.events.sensorsEnded, input.sensorsEnded ?? []);
-    assert.deepEqual(frame.events.hits.map(({ a, b, speed }) => ({ a, b, speed })), (input.hits ?? []).map(({ a, b, speed }) => ({ a, b, speed })));
-    const points = (input.contacts ?? []).flatMap(({ points }) => points);
-    assert.equal(frame.contacts?.impulses.length, points.length);
-    points.forEach(({ at }, i) => at.forEach((x, k) => assert.ok(Math.abs((frame.contacts?.points[3 * i + k] ?? NaN) - x) < 0.51 / quanta)));
+  assert.equal(frame.step, input.step);
+  assert.equal(frame.time, input.time);
+  assert.equal(
+    frame.present.reduce((sum, x) => sum + x, 0),
+    input.bodies.length,
+  );
+  for (const body of input.bodies) assertBody(frame, body);
+  assert.deepEqual(frame.events.contactsBegun, input.contactsBegun ?? []);
+  assert.deepEqual(frame.events.contactsEnded, input.contactsEnded ?? []);
+  assert.deepEqual(frame.events.sensorsBegun, input.sensorsBegun ?? []);
+  assert.deepEqual(frame.events.sensorsEnded, input.sensorsEnded ?? []);
+  assert.deepEqual(
+    frame.events.hits.map(({ a, b, speed }) => ({ a, b, speed })),
+    (input.hits ?? []).map(({ a, b, speed }) => ({ a, b, speed })),
+  );
+  const points = (input.contacts ?? []).flatMap(({ points }) => points);
+  assert.equal(frame.contacts?.impulses.length, points.length);
+  points.forEach(({ at }, i) =>
+    at.forEach((x, k) => assert.ok(Math.abs((frame.contacts?.points[3 * i + k] ?? NaN) - x) < 0.51 / quanta)),
+  );
 }
 
 const summariesOf = (recording: Recording): Summary[] => {
-    const summaries: Summary[] = [];
-    finish(recording.readSummaries(summaries));
-    return summaries;
+  const summaries: Summary[] = [];
+  finish(recording.readSummaries(summaries));
+  return summaries;
 };
 
-for (const [name, pack] of [["plain", plain], ["zstd", zstdRaw]] as const)
-    test(`every frame of a ${name} recording comes back as it went in`, () => {
-        const { file, inputs } = makeFixture({ ...small, pack });
-        const recording = Recording.openNow(file);
-        assert.equal(recording.lost, "");
-        assert.equal(recording.frameCount, inputs.length);
-        inputs.forEach((input, i) => assertFrame(recording.frame(i), input));
-    });
+for (const [name, pack] of [
+  ["plain", plain],
+  ["zstd", zstdRaw],
+] as const)
+  test(`every frame of a ${name} recording comes back as it went in`, () => {
+    const { file, inputs } = makeFixture({ ...small, pack });
+    const recording = Recording.openNow(file);
+    assert.equal(recording.lost, "");
+    assert.equal(recording.frameCount, inputs.length);
+    inputs.forEach((input, i) => assertFrame(recording.frame(i), input));
+  });
 
 test("frames asked for in any order are the same as in order", () => {
-    const { file, inputs } = makeFixture(small);
-    const recording = Recording.openNow(file);
-    for (const i of [99, 0, 50, 49, 48, 98, 31, 32, 33, 1, 64]) assertFrame(recording.frame(i), inputs[i]);
+  const { file, inputs } = makeFixture(small);
+  const recording = Recording.openNow(file);
+  for (const i of [99, 0, 50, 49, 48, 98, 31, 32, 33, 1, 64]) assertFrame(recording.frame(i), inputs[i]);
 });
 
 test("what is the same in all frames is read: names, numbers, colours, shapes, visuals", () => {
-    const { tables } = Recording.openNow(makeFixture(small).file);
-    assert.equal(tables.title, "test wall");
-    assert.ok(Math.abs(tables.timeStep - 1 / 60) < 1e-8);
-    assert.equal(tables.stageNames[4], "solve");
-    assert.equal(tables.bodies[1].name, "ball");
-    assert.equal(tables.bodies[1].colour, 0xc0392b);
-    assert.equal(tables.bodies[2].colour, null);
-    assert.equal(tables.bodies[1].user, 1n + (1n << 40n));
-    assert.deepEqual(tables.shapes.slice(0, 5).map(({ kind }) => kind), ["half-space", "box", "sphere", "capsule", "cylinder"]);
-    assert.equal(tables.visuals[0].colour, 0x9ad0a0);
-    assert.ok(tables.colliders[6].sensor);
+  const { tables } = Recording.openNow(makeFixture(small).file);
+  assert.equal(tables.title, "test wall");
+  assert.ok(Math.abs(tables.timeStep - 1 / 60) < 1e-8);
+  assert.equal(tables.stageNames[4], "solve");
+  assert.equal(tables.bodies[1].name, "ball");
+  assert.equal(tables.bodies[1].colour, 0xc0392b);
+  assert.equal(tables.bodies[2].colour, null);
+  assert.equal(tables.bodies[1].user, 1n + (1n << 40n));
+  assert.deepEqual(
+    tables.shapes.slice(0, 5).map(({ kind }) => kind),
+    ["half-space", "box", "sphere", "capsule", "cylinder"],
+  );
+  assert.equal(tables.visuals[0].colour, 0x9ad0a0);
+  assert.ok(tables.colliders[6].sensor);
 });
 
 test("summaries hold stage times, counters and the number of events", () => {
-    const { file, inputs } = makeFixture(small);
-    const summaries = summariesOf(Recording.openNow(file));
-    assert.equal(summaries.length, inputs.length);
-    summaries.forEach((summary, i) => {
-        assert.deepEqual(summary.counters, inputs[i].counters);
-        summary.stages.forEach((ms, k) => assert.ok(Math.abs(ms - inputs[i].stages[k]) < 1e-5));
-        assert.equal(summary.hits, inputs[i].hits?.length);
-        assert.equal(summary.sensors, (inputs[i].sensorsBegun?.length ?? 0) + (inputs[i].sensorsEnded?.length ?? 0));
-    });
-    assert.equal(summaries[30].added, 1, "one body comes at half a second");
+  const { file, inputs } = makeFixture(small);
+  const summaries = summariesOf(Recording.openNow(file));
+  assert.equal(summaries.length, inputs.length);
+  summaries.forEach((summary, i) => {
+    assert.deepEqual(summary.counters, inputs[i].counters);
+    summary.stages.forEach((ms, k) => assert.ok(Math.abs(ms - inputs[i].stages[k]) < 1e-5));
+    assert.equal(summary.hits, inputs[i].hits?.length);
+    assert.equal(summary.sensors, (inputs[i].sensorsBegun?.length ?? 0) + (inputs[i].sensorsEnded?.length ?? 0));
+  });
+  assert.equal(summaries[30].added, 1, "one body comes at half a second");
 });
 
 test("a recording cut anywhere opens with all blocks that are whole", () => {
-    const { file, chunkOffsets }: Fixture = makeFixture({ frames: 70, columns: 2, courses: 2, blockFrames: 16 });
-    const ends = [...chunkOffsets.slice(1), file.length];
-    const blockEnds = ends.slice(-5);
-    for (let length = 0; length < file.length; length += length < 600 ? 1 : 97) {
-        const cut = file.subarray(0, length);
-        const whole = blockEnds.filter((end) => end <= length).length;
-        if (whole === 0) {
-            assert.throws(() => Recording.openNow(cut), { name: "RecordingError" });
-            continue;
-        }
-        const recording = Recording.openNow(cut);
-        assert.equal(recording.frameCount, 16 * whole);
-        assert.equal(recording.lost === "", ends.includes(length), `${length}: ${recording.lost}`);
-        recording.frame(recording.frameCount - 1);
+  const { file, chunkOffsets }: Fixture = makeFixture({ frames: 70, columns: 2, courses: 2, blockFrames: 16 });
+  const ends = [...chunkOffsets.slice(1), file.length];
+  const blockEnds = ends.slice(-5);
+  for (let length = 0; length < file.length; length += length < 600 ? 1 : 97) {
+    const cut = file.subarray(0, length);
+    const whole = blockEnds.filter((end) => end <= length).length;
+    if (whole === 0) {
+      assert.throws(() => Recording.openNow(cut), { name: "RecordingError" });
+      continue;
     }
+    const recording = Recording.openNow(cut);
+    assert.equal(recording.frameCount, 16 * whole);
+    assert.equal(recording.lost === "", ends.includes(length), `${length}: ${recording.lost}`);
+    recording.frame(recording.frameCount - 1);
+  }
 });
 
 test("a flipped bit ends the recording before its chunk, and never shows what is wrong", () => {
-    const { file, inputs, chunkOffsets } = makeFixture({ frames: 40, columns: 2, courses: 1, blockFrames: 8 });
-    for (let at = 0; at < file.length; at += at < 400 ? 1 : 23) {
-        const damaged = file.slice();
-        damaged[at] ^= 1 << (at % 8);
-        const firstBlock = chunkOffsets[chunkOffsets.length - 5];
-        if (at < firstBlock) {
-            assert.throws(() => Recording.openNow(damaged), { name: "RecordingError" }, `byte ${at}`);
-            continue;
-        }
-        if (at < chunkOffsets[chunkOffsets.length - 4]) {
-            assert.throws(() => Recording.openNow(damaged), { name: "RecordingError" });
-            continue;
-        }
-        const recording = Recording.openNow(damaged);
-        assert.ok(recording.frameCount < inputs.length && recording.lost !== "");
-        assertFrame(recording.frame(recording.frameCount - 1), inputs[recording.frameCount - 1]);
+  const { file, inputs, chunkOffsets } = makeFixture({ frames: 40, columns: 2, courses: 1, blockFrames: 8 });
+  for (let at = 0; at < file.length; at += at < 400 ? 1 : 23) {
+    const damaged = file.slice();
+    damaged[at] ^= 1 << (at % 8);
+    const firstBlock = chunkOffsets[chunkOffsets.length - 5];
+    if (at < firstBlock) {
+      assert.throws(() => Recording.openNow(damaged), { name: "RecordingError" }, `byte ${at}`);
+      continue;
     }
+    if (at < chunkOffsets[chunkOffsets.length - 4]) {
+      assert.throws(() => Recording.openNow(damaged), { name: "RecordingError" });
+      continue;
+    }
+    const recording = Recording.openNow(damaged);
+    assert.ok(recording.frameCount < inputs.length && recording.lost !== "");
+    assertFrame(recording.frame(recording.frameCount - 1), inputs[recording.frameCount - 1]);
+  }
 });
 
 test("damage behind a right check is an error in words, never a crash", () => {
-    const { inputs } = makeFixture({ frames: 6, columns: 2, courses: 1 });
-    const encoder = new FrameEncoder(quanta);
-    inputs.forEach((input) => encoder.add(input));
-    const raw = encoder.takeBlock();
-    const fixture = makeFixture({ frames: 6, columns: 2, courses: 1 });
-    const before = fixture.file.subarray(0, fixture.chunkOffsets[fixture.chunkOffsets.length - 1]);
-    for (let at = 0; at < raw.length; ++at) {
-        const damaged = raw.slice();
-        damaged[at] ^= 0xff;
-        try {
-            const recording = Recording.openNow(join(before, chunk("FRMS", damaged)));
-            for (let i = 0; i < recording.frameCount; ++i) recording.frame(i);
-            summariesOf(recording);
-        } catch (error) {
-            assert.equal((error as Error).name, "RecordingError", `byte ${at}: ${(error as Error).stack}`);
-        }
+  const { inputs } = makeFixture({ frames: 6, columns: 2, courses: 1 });
+  const encoder = new FrameEncoder(quanta);
+  inputs.forEach((input) => encoder.add(input));
+  const raw = encoder.takeBlock();
+  const fixture = makeFixture({ frames: 6, columns: 2, courses: 1 });
+  const before = fixture.file.subarray(0, fixture.chunkOffsets[fixture.chunkOffsets.length - 1]);
+  for (let at = 0; at < raw.length; ++at) {
+    const damaged = raw.slice();
+    damaged[at] ^= 0xff;
+    try {
+      const recording = Recording.openNow(join(before, chunk("FRMS", damaged)));
+      for (let i = 0; i < recording.frameCount; ++i) recording.frame(i);
+      summariesOf(recording);
+    } catch (error) {
+      assert.equal((error as Error).name, "RecordingError", `byte ${at}: ${(error as Error).stack}`);
     }
+  }
 });
 
 test("other files, other versions and empty recordings are refused with the reason", () => {
-    assert.throws(() => Recording.openNow(new Uint8Array(0)), /empty/);
-    assert.throws(() => Recording.openNow(new TextEncoder().encode("glTF....................")), /not a Fase recording/);
-    assert.throws(() => Recording.openNow(fileHeader(7)), /version 7, this viewer reads 1/);
-    assert.throws(() => Recording.openNow(fileHeader()), /no HEAD/);
-    const { file, chunkOffsets } = makeFixture({ frames: 1, columns: 1, courses: 1 });
-    assert.throws(() => Recording.openNow(file.subarray(0, chunkOffsets[7])), /no frames/);
+  assert.throws(() => Recording.openNow(new Uint8Array(0)), /empty/);
+  assert.throws(() => Recording.openNow(new TextEncoder().encode("glTF....................")), /not a Fase recording/);
+  assert.throws(() => Recording.openNow(fileHeader(7)), /version 7, this viewer reads 1/);
+  assert.throws(() => Recording.openNow(fileHeader()), /no HEAD/);
+  const { file, chunkOffsets } = makeFixture({ frames: 1, columns: 1, courses: 1 });
+  assert.throws(() => Recording.openNow(file.subarray(0, chunkOffsets[7])), /no frames/);
 });
 
 /** A recording of one ball, written by hand. */
 function tiny(frames: FrameInput[], more: Uint8Array[] = []): Uint8Array {
-    const encoder = new FrameEncoder(quanta);
-    frames.forEach((frame) => encoder.add(frame));
-    const body = { index: 4, generation: 2, kind: 2, user: 7n, mass: 1, colour: null, name: "" };
-    return join(
-        fileHeader(),
-        chunk("HEAD", join(head({ title: "", timeStep: 0.01, quantaPerMetre: quanta, hasContacts: false, stageNames: [], counterNames: [] }), new Uint8Array(9))),
-        chunk("SHAP", shapes([{ kind: "sphere", radius: 1 }])),
-        chunk("BODY", bodies([body])),
-        chunk("COLL", colliders([{ body: 0, shape: 0 }, { body: 0, shape: 0, from: 2 }])),
-        chunk("FRMS", encoder.takeBlock()),
-        ...more,
-    );
+  const encoder = new FrameEncoder(quanta);
+  frames.forEach((frame) => encoder.add(frame));
+  const body = { index: 4, generation: 2, kind: 2, user: 7n, mass: 1, colour: null, name: "" };
+  return join(
+    fileHeader(),
+    chunk(
+      "HEAD",
+      join(
+        head({
+          title: "",
+          timeStep: 0.01,
+          quantaPerMetre: quanta,
+          hasContacts: false,
+          stageNames: [],
+          counterNames: [],
+        }),
+        new Uint8Array(9),
+      ),
+    ),
+    chunk("SHAP", shapes([{ kind: "sphere", radius: 1 }])),
+    chunk("BODY", bodies([body])),
+    chunk(
+      "COLL",
+      colliders([
+        { body: 0, shape: 0 },
+        { body: 0, shape: 0, from: 2 },
+      ]),
+    ),
+    chunk("FRMS", encoder.takeBlock()),
+    ...more,
+  );
 }
-const frameOf = (step: number, bodies: BodyInput[]): FrameInput => ({ step, time: step / 100, total: 1, stages: [], counters: [], bodies });
+const frameOf = (step: number, bodies: BodyInput[]): FrameInput => ({
+  step,
+  time: step / 100,
+  total: 1,
+  stages: [],
+  counters: [],
+  bodies,
+});
 const at = (x: number): BodyInput => ({ row: 0, position: [x, 0, 0], rotation: [0, 0, 0, 1], flags: 9, island: 0 });
 
 test("a body that rests, moves, jumps, goes far away and comes back is where it should be", () => {
-    const places = [0, 0.1, 0.25, 0.25, 0.3, 0.6, 5000, 5000.2, -9e6, -9e6, 3, 3.1];
-    const recording = Recording.openNow(tiny(places.map((x, i) => frameOf(i, [at(x)]))));
-    places.forEach((x, i) => assert.ok(Math.abs(recording.frame(i).positions[0] - x) < 0.51 / quanta, `frame ${i}`));
+  const places = [0, 0.1, 0.25, 0.25, 0.3, 0.6, 5000, 5000.2, -9e6, -9e6, 3, 3.1];
+  const recording = Recording.openNow(tiny(places.map((x, i) => frameOf(i, [at(x)]))));
+  places.forEach((x, i) => assert.ok(Math.abs(recording.frame(i).positions[0] - x) < 0.51 / quanta, `frame ${i}`));
 });
 
 test("rotations turn points as the ones that were written do", () => {
-    const rotations = [[0.5, 0.5, 0.5, 0.5], [-0.9, 0.1, 0.3, -0.2], [0.1, -0.99, 0, 0.05], [0.2, 0.1, -0.95, 0.1], [0, 0, 0.05, -0.99]] as const;
-    const recording = Recording.openNow(tiny(rotations.map((q, i) => frameOf(i, [{ ...at(0), rotation: [...q] }]))));
-    rotations.forEach((q, i) => {
-        const norm = Math.hypot(...q);
-        const want = rotate([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm], [1, 2, 3]);
-        const have = rotate([...recording.frame(i).rotations] as [number, number, number, number], [1, 2, 3]);
-        want.forEach((x, k) => assert.ok(Math.abs(x - have[k]) < 2e-3));
-    });
+  const rotations = [
+    [0.5, 0.5, 0.5, 0.5],
+    [-0.9, 0.1, 0.3, -0.2],
+    [0.1, -0.99, 0, 0.05],
+    [0.2, 0.1, -0.95, 0.1],
+    [0, 0, 0.05, -0.99],
+  ] as const;
+  const recording = Recording.openNow(tiny(rotations.map((q, i) => frameOf(i, [{ ...at(0), rotation: [...q] }]))));
+  rotations.forEach((q, i) => {
+    const norm = Math.hypot(...q);
+    const want = rotate([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm], [1, 2, 3]);
+    const have = rotate([...recording.frame(i).rotations] as [number, number, number, number], [1, 2, 3]);
+    want.forEach((x, k) => assert.ok(Math.abs(x - have[k]) < 2e-3));
+  });
 });
 
 test("colliders come and go at their frames; unknown chunks and the index are passed over", () => {
-    const index = chunk("INDX", new Uint8Array(4));
-    const file = tiny([0, 1, 2, 3].map((i) => frameOf(i, [at(i)])), [
-        chunk("CEND", colliderEnds([{ collider: 0, frame: 3 }])), chunk("ZZZZ", new Uint8Array(5)), index, new Uint8Array(16),
-    ]);
-    const { tables, lost } = Recording.openNow(file);
-    assert.equal(lost, "");
-    assert.deepEqual(tables.colliders.map(({ from, to }) => [from, to]), [[0, 3], [2, Infinity]]);
+  const index = chunk("INDX", new Uint8Array(4));
+  const file = tiny(
+    [0, 1, 2, 3].map((i) => frameOf(i, [at(i)])),
+    [
+      chunk("CEND", colliderEnds([{ collider: 0, frame: 3 }])),
+      chunk("ZZZZ", new Uint8Array(5)),
+      index,
+      new Uint8Array(16),
+    ],
+  );
+  const { tables, lost } = Recording.openNow(file);
+  assert.equal(lost, "");
+  assert.deepEqual(
+    tables.colliders.map(({ from, to }) => [from, to]),
+    [
+      [0, 3],
+      [2, Infinity],
+    ],
+  );
 });
 
 const real = process.env.FASE_RECORDING;
-test("a recording of the program decodes from end to end", { skip: real ? false : "skipped: FASE_RECORDING names no recording" }, () => {
+test(
+  "a recording of the program decodes from end to end",
+  { skip: real ? false : "skipped: FASE_RECORDING names no recording" },
+  () => {
     const recording = Recording.openNow(new Uint8Array(readFileSync(real as string)));
     assert.equal(recording.lost, "");
     assert.ok(recording.frameCount > 0 && recording.tables.bodies.length > 0);
     const summaries = summariesOf(recording);
     assert.equal(summaries.length, recording.frameCount);
     for (let i = 0; i < recording.frameCount; ++i) {
-        const frame = recording.frame(i);
-        assert.ok(frame.positions.every(Number.isFinite) && frame.rotations.every(Number.isFinite));
-        assert.equal(frame.step, summaries[i].step);
-        const bodies = recording.tables.counterNames.indexOf("bodies");
-        if (bodies >= 0 && frame.step > 0) assert.equal(frame.present.reduce((sum, x) => sum + x, 0), summaries[i].counters[bodies], `frame ${i}`);
+      const frame = recording.frame(i);
+      assert.ok(frame.positions.every(Number.isFinite) && frame.rotations.every(Number.isFinite));
+      assert.equal(frame.step, summaries[i].step);
+      const bodies = recording.tables.counterNames.indexOf("bodies");
+      if (bodies >= 0 && frame.step > 0)
+        assert.equal(
+          frame.present.reduce((sum, x) => sum + x, 0),
+          summaries[i].counters[bodies],
+          `frame ${i}`,
+        );
     }
-});
+  },
+);

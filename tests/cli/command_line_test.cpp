@@ -1,0 +1,159 @@
+/// The command line of `fase`: help, refusals, streams that are closed or full.
+#include "tests/cli/fase_program.hpp"
+
+namespace fase::cli {
+namespace {
+
+TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
+    const Outcome version = run_fase({"--version"});
+    EXPECT_EQ(version.code, 0);
+    EXPECT_TRUE(version.out.starts_with("fase ")) << version.out;
+    const Outcome help = run_fase({"--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(help.err, "");
+    for (const char* command : {"run", "view", "info", "generate", "distance"}) {
+        EXPECT_NE(help.out.find(std::string("\n  ") + command), std::string::npos) << command;
+        const Outcome own = run_fase({command, "--help"});
+        EXPECT_EQ(own.code, 0);
+        EXPECT_NE(own.out.find("Example"), std::string::npos) << command;
+        EXPECT_NE(own.out.find(std::string("  fase ") + command), std::string::npos) << command;
+    }
+}
+
+TEST(CommandLine, EachExampleOfTheHelpIsAccepted) {
+    // Commands are only taken apart: a file that is not there is the first thing that may go wrong.
+    for (const char* command : {"run", "view", "info", "generate", "distance"}) {
+        const std::string help = run_fase({command, "--help"}).out;
+        std::size_t examples = 0;
+        const std::string mark = std::string("\n  fase ") + command;
+        for (std::size_t at = help.find(mark); at != std::string::npos; at = help.find(mark, at + 1)) {
+            std::vector<std::string> words;
+            std::string line = help.substr(at + 3, help.find('\n', at + 1) - at - 3), word;
+            for (const char c : line + " ") {
+                if (c != ' ') word += c;
+                if (c == ' ' && !word.empty()) words.push_back(std::exchange(word, {}));
+            }
+            words.erase(words.begin());
+            words.push_back("--help");  // stops after the arguments were read
+            EXPECT_EQ(run_fase(words).code, 0) << line;
+            ++examples;
+        }
+        EXPECT_GE(examples, 1u) << command;
+    }
+}
+
+TEST(CommandLine, WhatCannotBeMeantIsRefusedByName) {
+    struct Case {
+        std::vector<std::string> arguments;
+        std::string words;
+    };
+    const std::vector<Case> cases{
+        {{}, "COMMAND: found none"},
+        {{"jump"}, "jump: found an unknown command, need one of run, view"},
+        {{"--loud"}, "--loud: found an unknown option"},
+        {{"run"}, "SCENE"},
+        {{"run", ""}, "SCENE: found \"\""},
+        {{"run", "stack", "more"}, "more: found an unknown argument"},
+        {{"run", "stack", "--loud"}, "--loud: found an unknown option"},
+        {{"run", "stack", "--steps"}, "--steps: found no value"},
+        {{"run", "stack", "--steps", "1e999"}, "--steps: found \"1e999\", need a whole number"},
+        {{"run", "stack", "--steps", "-5"}, "--steps: found \"-5\""},
+        {{"run", "stack", "--steps", "12abc"}, "--steps: found \"12abc\""},
+        {{"run", "stack", "--steps", ""}, "--steps: found \"\""},
+        {{"run", "stack", "--steps", " 5"}, "--steps: found \" 5\""},
+        {{"run", "stack", "--steps", "18446744073709551617"}, "--steps: found \"18446744073709551617\""},
+        {{"run", "stack", "--steps", "1", "--steps", "2"}, "--steps: found more than once"},
+        {{"run", "stack", "--steps", "1", "--seconds", "2"}, "--steps"},
+        {{"run", "stack", "--seconds", "1e999"}, "--seconds: found \"1e999\", need a number above 0"},
+        {{"run", "stack", "--seconds", "-5"}, "--seconds: found \"-5\""},
+        {{"run", "stack", "--seconds", "0"}, "--seconds: found \"0\""},
+        {{"run", "stack", "--seconds", "nan"}, "--seconds: found \"nan\""},
+        {{"run", "stack", "--seconds", "0x10"}, "--seconds: found \"0x10\""},
+        {{"run", "stack", "--dt", "2"}, "--dt: found \"2\""},
+        {{"run", "stack", "--threads", "1025"}, "--threads: found \"1025\""},
+        {{"run", "stack", "--record", ""}, "--record: found \"\""},
+        {{"run", "stack", "--contacts"}, "--contacts requires --record"},
+        {{"view", "x", "--port", "65536"}, "--port: found \"65536\""},
+        {{"generate", "castle"}, "--output"},
+        {{"distance"}, "PAIRS.json"},
+        {{"info", "a\nb", "c\x1b[31m\xff"}, "c\\x1b[31m\\xff: found an unknown argument"},
+    };
+    for (const Case& one : cases) {
+        const Outcome outcome = run_fase(one.arguments);
+        expect_error_line(outcome, 2, one.words);
+        EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
+    }
+}
+
+TEST(CommandLine, AHugeArgumentIsCutInTheMessage) {
+    const std::string huge(120000, 'a');  // the system takes no single argument of 128 KiB
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{huge}, {"run", "stack", "--" + huge}, {"run", "stack", "--steps", huge}}) {
+        const Outcome outcome = run_fase(arguments);
+        expect_error_line(outcome, 2, "aaaa…");
+        EXPECT_LT(outcome.err.size(), 400u);
+    }
+    std::vector<std::string> many(17, huge);  // 2 MiB in all
+    many.insert(many.begin(), {"run", "stack"});
+    const Outcome outcome = run_fase(many);
+    expect_error_line(outcome, 2, "found an unknown argument");
+    EXPECT_LT(outcome.err.size(), 400u);
+}
+
+TEST(CommandLine, AStrangePathWorksAndIsEscapedWhenPrinted) {
+    const TemporaryFolder folder;
+    const std::string strange = folder / "a\n\t\x1b[1m\xff.glb";
+    ASSERT_EQ(run_fase({"generate", "stack", "--count", "2", "-o", strange}).code, 0);
+    for (const char* command : {"run", "info"}) {
+        std::vector<std::string> arguments{command, strange};
+        if (command == std::string("run")) arguments.insert(arguments.end(), {"--steps", "1"});
+        const Outcome outcome = run_fase(arguments);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos);
+        EXPECT_EQ(outcome.out.find('\xff'), std::string::npos);
+    }
+    const Outcome json = run_fase({"run", strange, "--steps", "1", "--json"});
+    EXPECT_TRUE(scene::parse_json(json.out)) << json.out;
+    const Outcome missing = run_fase({"run", folder / "b\n\x1b\xff.glb"});
+    expect_error_line(missing, 3, "b\\n\\x1b\\xff.glb");
+}
+
+TEST(CommandLine, ANameThatBeginsWithADashIsAFileBehindTwo) {
+    const TemporaryFolder folder;
+    const std::string go = "cd '" + folder.path() + "' && exec \"$0\" \"$@\"";
+    EXPECT_EQ(RunningFase::by_shell(go, {"generate", "stack", "--count", "2", "--output=-x.glb"}).wait().code, 0);
+    EXPECT_EQ(RunningFase::by_shell(go, {"run", "--steps", "1", "--", "-x.glb"}).wait().code, 0);
+}
+
+TEST(CommandLine, AClosedStandardOutputIsNoError) {
+    const TemporaryFolder folder;
+    const std::string recording = folder / "r.faserec";
+    const Outcome closed = RunningFase({"run", "stack", "--steps", "5", "--record", recording}, "closed").wait();
+    EXPECT_EQ(closed.code, 0);
+    EXPECT_EQ(closed.err, "");
+    const Outcome info = run_fase({"info", recording, "--json"});
+    EXPECT_NE(info.out.find("\"complete\": true"), std::string::npos) << info.out;
+}
+
+TEST(CommandLine, AReaderThatLeavesEndsItQuietly) {
+    for (const char* option : {"--help", "--version"}) {
+        const Outcome outcome = RunningFase::by_shell("\"$0\" \"$@\" | true; exit 0", {option}).wait();
+        EXPECT_EQ(outcome.code, 0);
+        EXPECT_EQ(outcome.err, "");
+    }
+    const Outcome outcome =
+        RunningFase::by_shell("{ \"$0\" \"$@\"; echo $? >&2; } | true", {"run", "stack", "--steps", "500"}).wait();
+    EXPECT_EQ(outcome.err, "141\n");
+}
+
+TEST(CommandLine, AFullStandardOutputIsAnError) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"run", "stack", "--steps", "1"},
+                                                      {"run", "stack", "--steps", "1", "--json"},
+                                                      {"--help"}}) {
+        const Outcome outcome = RunningFase(arguments, "/dev/full").wait();
+        expect_error_line(outcome, 3, "standard output: cannot write: No space left");
+    }
+}
+
+}  // namespace
+}  // namespace fase::cli
