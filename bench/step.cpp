@@ -34,9 +34,21 @@ struct Contender {
     StepRow row;
 };
 
-Result<void> take_turn(Contender& contender, std::uint64_t steps) {
+/// Where the run of all scenes stands.
+struct Course {
+    const StepOptions& options;
+    const StepProgress& progress;
+    std::uint64_t done = 0, total = 0;
+    bool stopped = false;
+};
+
+Result<void> take_turn(Course& course, Contender& contender, std::uint64_t steps) {
     using Clock = std::chrono::steady_clock;
     for (std::uint64_t i = 0; i < steps; ++i) {
+        if (!course.progress(course.done++, course.total, contender.row.scene, contender.row.engine)) {
+            course.stopped = true;
+            return {};
+        }
         const Clock::time_point begin = Clock::now();
         if (auto stepped = contender.engine->step(); !stepped) return stepped.error();
         contender.ms.back().push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
@@ -89,14 +101,6 @@ void sum_up(Contender& contender) {
     }
 }
 
-/// Where the run of all scenes stands.
-struct Course {
-    const StepOptions& options;
-    const StepProgress& progress;
-    std::uint64_t done = 0, total = 0;
-    bool stopped = false;
-};
-
 Result<void> run_round(Course& course, const scene::Scene& scene, const EngineOptions& engine_options,
                        std::vector<Contender>& contenders, std::uint64_t steps, int round) {
     std::vector<std::vector<Vec3d>> begins(contenders.size());
@@ -109,15 +113,9 @@ Result<void> run_round(Course& course, const scene::Scene& scene, const EngineOp
     }
     for (std::uint64_t at = 0; at < steps; at += steps_a_turn) {
         for (Contender& contender : contenders) {
-            const std::string next =
-                fmt::format("{} {} round {}", contender.row.scene, contender.row.engine, round + 1);
-            if (!course.progress(course.done, course.total, next)) {
-                course.stopped = true;
-                return {};
-            }
             const std::uint64_t turn = std::min(steps_a_turn, steps - at);
-            if (auto taken = take_turn(contender, turn); !taken) return taken.error();
-            course.done += turn;
+            if (auto taken = take_turn(course, contender, turn); !taken) return taken.error();
+            if (course.stopped) return {};
         }
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) {

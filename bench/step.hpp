@@ -46,8 +46,9 @@ struct StepRow {
     double drift = 0;                        ///< mean way from where the bodies began, metres
 };
 
-/// Told before each turn of an engine: turns done, of so many, and what is next. Returns false to stop.
-using StepProgress = std::function<bool(std::uint64_t done, std::uint64_t total, const std::string& next)>;
+/// Told before each step: steps done, of so many, and whose turn it is. Returns false to stop.
+using StepProgress =
+    std::function<bool(std::uint64_t done, std::uint64_t total, std::string_view scene, std::string_view engine)>;
 
 /// Runs all that the options name. In a round the engines take turns of a few steps each, all in the same minutes of
 /// the same machine. Errors: BadArgument for a name that is not there; what an engine says. Stopped: the rows of the

@@ -21,14 +21,22 @@ constexpr std::size_t most_bytes = std::size_t{1} << 26;
 std::string field(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + '"';
+    for (const char c : text) {
+        if (c == '"') out += '"';
+        out += c;
+    }
+    out += '"';
+    return out;
 }
 
 std::string line_of(const std::vector<std::string>& fields) {
     std::string line;
-    for (const std::string& one : fields) line += (line.empty() ? "" : ",") + field(one);
-    return line + '\n';
+    for (const std::string& one : fields) {
+        if (!line.empty()) line += ',';
+        line += field(one);
+    }
+    line += '\n';
+    return line;
 }
 
 /// What a command prints, without the line's end; "" when it fails.

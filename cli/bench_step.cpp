@@ -118,23 +118,35 @@ std::string bench_scene_names() { return names_of(bench::step_scenes()); }
 std::string bench_engine_names() { return names_of(bench::engines()); }
 
 int run_bench_step(const BenchStepOptions& options) {
-    std::optional<Progress> bar;
     const ProgressForm form = progress_form(options.json);
     const Interrupts interrupts;
-    const Result<std::vector<bench::StepRow>> rows =
-        bench::measure_steps(options, [&](std::uint64_t done, std::uint64_t total, const std::string& next) {
-            if (!bar) bar.emplace(form, "step", total);
-            bar->update(done, next);
+    std::vector<bench::StepRow> rows;
+    std::vector<std::string> scenes;
+    if (!options.scene.empty()) scenes.push_back(options.scene);
+    for (const bench::StepScene& scene : bench::step_scenes()) {
+        if (options.scene.empty()) scenes.emplace_back(scene.name);
+    }
+    // Scene by scene, so that what is measured is kept whatever comes.
+    for (std::size_t i = 0; i < scenes.size() && Interrupts::signal() == 0; ++i) {
+        bench::StepOptions one = options;
+        one.scene = scenes[i];
+        std::optional<Progress> progress;
+        const auto tell = [&](std::uint64_t done, std::uint64_t total, std::string_view scene,
+                              std::string_view engine) {
+            if (!progress) progress.emplace(form, "step", total);
+            if (progress->due()) progress->update(done, fmt::format("{} {}", scene, engine));
             return Interrupts::signal() == 0;
-        });
-    bar.reset();
-    if (!rows) return refuse(rows.error());
-    if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
-    const std::string text = options.json ? to_json(*rows) : to_table(*rows);
+        };
+        const Result<std::vector<bench::StepRow>> measured = bench::measure_steps(one, tell);
+        if (!measured) return refuse(measured.error());
+        if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
+        rows.insert(rows.end(), measured->begin(), measured->end());
+    }
+    const std::string text = options.json ? to_json(rows) : to_table(rows);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_repeat =
-        std::all_of(rows->begin(), rows->end(), [](const bench::StepRow& row) { return row.repeats || !row.hash; });
+        std::all_of(rows.begin(), rows.end(), [](const bench::StepRow& row) { return row.repeats || !row.hash; });
     return all_repeat ? exit_ok : exit_check_failed;
 }
 

@@ -1,6 +1,7 @@
 /// Bullet as an engine that `fase bench` measures.
 #include "bench/peers/bullet.hpp"
 
+#include <LinearMath/btConvexHullComputer.h>
 #include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
 
@@ -19,9 +20,21 @@ btTransform to_bullet(const LocalPose& pose) {
                        to_bullet(pose.position));
 }
 
-/// Bullet grows a hull by a margin, 4 cm by default: a pile of small rocks would stand on cushions. 1 mm keeps it in
-/// shape.
-constexpr btScalar hull_margin = 0.001f;
+/// Bullet grows a hull by a margin of 4 cm, which its collision needs to be quick. So the hull is shrunk by as much
+/// before, as Bullet itself does with boxes: the surface is then where the scene has it, with rounded edges.
+std::unique_ptr<btCollisionShape> make_hull(const ConvexHull& hull) {
+    std::vector<btVector3> points;
+    for (const Vec3 vertex : hull.vertices) points.push_back(to_bullet(vertex));
+    constexpr btScalar most_of_inner_radius = 0.5f;
+    auto shape = std::make_unique<btConvexHullShape>();
+    btConvexHullComputer computer;
+    const btScalar margin = computer.compute(&points[0][0], static_cast<int>(sizeof(btVector3)),
+                                             static_cast<int>(points.size()), shape->getMargin(), most_of_inner_radius);
+    for (int i = 0; i < computer.vertices.size(); ++i) shape->addPoint(computer.vertices[i], false);
+    shape->recalcLocalAabb();
+    shape->setMargin(margin);
+    return shape;
+}
 
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
     struct Make {
@@ -37,13 +50,7 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
         std::unique_ptr<btCollisionShape> operator()(const Cylinder& s) const {
             return std::make_unique<btCylinderShape>(btVector3(s.radius, s.half_height, s.radius));
         }
-        std::unique_ptr<btCollisionShape> operator()(const ConvexHull& s) const {
-            auto hull = std::make_unique<btConvexHullShape>();
-            for (const Vec3 vertex : s.vertices) hull->addPoint(to_bullet(vertex), false);
-            hull->recalcLocalAabb();
-            hull->setMargin(hull_margin);
-            return hull;
-        }
+        std::unique_ptr<btCollisionShape> operator()(const ConvexHull& s) const { return make_hull(s); }
         std::unique_ptr<btCollisionShape> operator()(const HalfSpace&) const {
             return std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0));
         }

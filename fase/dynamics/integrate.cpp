@@ -23,36 +23,36 @@ Vec3 capped(Vec3 v, float most, bool& clamped) {
 
 /// Turns the momentum about principal axis i by the body's turn of `h`, and adds that turn to `turn`.
 template <int i>
-void turn_about_axis(Quat& turn, Vec3& momentum, Vec3 moments, float h) {
+void turn_about_axis(Quatd& turn, Vec3d& momentum, Vec3d moments, double h) {
     constexpr int j = (i + 1) % 3, k = (i + 2) % 3;
     if (!(moments[i] > 0)) return;
-    const float t = half_angle_tangent(0.5f * h * (momentum[i] / moments[i]));
-    const float scale = 1 / (1 + t * t), c = (1 - t * t) * scale, s = 2 * t * scale;
-    const float mj = momentum[j], mk = momentum[k];
+    const double t = half_angle_tangent(0.5 * h * (momentum[i] / moments[i]));
+    const double scale = 1 / (1 + t * t), c = (1 - t * t) * scale, s = 2 * t * scale;
+    const double mj = momentum[j], mk = momentum[k];
     momentum[j] = c * mj + s * mk;
     momentum[k] = c * mk - s * mj;
-    Quat q{0, 0, 0, 1};
+    Quatd q{0, 0, 0, 1};
     (i == 0 ? q.x : i == 1 ? q.y : q.z) = t;
     turn = turn * q;
 }
 
 }  // namespace
 
-float half_angle_tangent(float x) {
-    const float a = x < 0 ? -x : x;
-    const float clamped = a < 1 ? a : 1;
-    const float squared = clamped * clamped;
-    const float tangent = clamped * (15 - squared) / (15 - 6 * squared) + (a - clamped) * 3.4f;
+double half_angle_tangent(double x) {
+    const double a = x < 0 ? -x : x;
+    const double clamped = a < 1 ? a : 1;
+    const double squared = clamped * clamped;
+    const double tangent = clamped * (15 - squared) / (15 - 6 * squared) + (a - clamped) * 3.4;
     return x < 0 ? -tangent : tangent;
 }
 
-void free_turn(Quat& rotation, Vec3& momentum, Vec3 moments, float h) {
-    Quat turn;
-    turn_about_axis<0>(turn, momentum, moments, 0.5f * h);
-    turn_about_axis<1>(turn, momentum, moments, 0.5f * h);
+void free_turn(Quatd& rotation, Vec3d& momentum, Vec3d moments, double h) {
+    Quatd turn;
+    turn_about_axis<0>(turn, momentum, moments, 0.5 * h);
+    turn_about_axis<1>(turn, momentum, moments, 0.5 * h);
     turn_about_axis<2>(turn, momentum, moments, h);
-    turn_about_axis<1>(turn, momentum, moments, 0.5f * h);
-    turn_about_axis<0>(turn, momentum, moments, 0.5f * h);
+    turn_about_axis<1>(turn, momentum, moments, 0.5 * h);
+    turn_about_axis<0>(turn, momentum, moments, 0.5 * h);
     rotation = normalized(rotation * turn);
 }
 
@@ -96,14 +96,16 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
         Quat turned{body.turned[0], body.turned[1], body.turned[2], body.turned[3]};
         const float fast = length_squared(spin) * h * h;
         if (motion.tumbles && fast > 1e-8f) {
-            Quat rotation = turned * motion.rotation;
-            Vec3 momentum = multiply(rotate_back(rotation, spin), motion.moments);
-            free_turn(rotation, momentum, motion.moments, h);
-            const Vec3 inverse{1 / motion.moments.x, 1 / motion.moments.y, 1 / motion.moments.z};
-            const Vec3 after = rotate(rotation, multiply(momentum, inverse));
+            const Quatd start = normalized(to_double(motion.rotation));
+            const Vec3d moments = to_double(motion.moments);
+            Quatd rotation = normalized(to_double(turned) * start);
+            Vec3d momentum = multiply(rotate_back(rotation, to_double(spin)), moments);
+            free_turn(rotation, momentum, moments, static_cast<double>(h));
+            const Vec3d principal{momentum.x / moments.x, momentum.y / moments.y, momentum.z / moments.z};
+            const Vec3 after = to_float(rotate(rotation, principal));
             motion.free_spin += after - spin;
             write(body.spin, after);
-            turned = normalized(rotation * conjugate(motion.rotation));
+            turned = to_float(normalized(rotation * conjugate(start)));
         } else if (fast > 0) {
             // tan(angle / 2) / angle, so that the turn is as long as it should be.
             const float x = 0.25f * fast;

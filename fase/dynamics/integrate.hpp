@@ -41,10 +41,10 @@ void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> 
 void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motions, float sub_step);
 
 /// tan(x) for |x| <= 1, from above that point on its tangent; relative error below 2e-3 at 1 and 1e-7 below 0.1.
-[[nodiscard]] float half_angle_tangent(float x);
+[[nodiscard]] double half_angle_tangent(double x);
 
-/// One free turn of `h` seconds: `rotation` (principal axes to world) and angular momentum in the principal frame. |momentum| is kept
-/// to rounding, the energy to O(h²) without drift.
-void free_turn(Quat& rotation, Vec3& momentum, Vec3 moments, float h);
+/// One free turn of `h` seconds: `rotation` (principal axes to world) and angular momentum in the principal frame. |momentum| is
+/// kept to rounding, the energy to O(h²) without drift. In double, so that thousands of steps do not add up their rounding.
+void free_turn(Quatd& rotation, Vec3d& momentum, Vec3d moments, double h);
 
 }  // namespace fase::dynamics

@@ -118,7 +118,10 @@ void finish(WorldState& state, float seconds) {
             const bool still = length_squared(next.linear_velocity) == 0 && length_squared(next.angular_velocity) == 0;
             const bool rests = traits.kind == BodyKind::Dynamic ? slow && stays && traits.can_sleep : still;
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
-            if (!rests) next.drift = next.turn = {};
+            // The distance counts within each span of the time to sleep, not from the first rest on.
+            const float span = state.settings.time_to_sleep;
+            const bool spans_end = span > 0 && std::floor(next.sleep_time / span) > std::floor((next.sleep_time - seconds) / span);
+            if (!rests || spans_end) next.drift = next.turn = {};
             state.bodies.motion[body] = next;
         }
     });

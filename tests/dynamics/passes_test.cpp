@@ -121,21 +121,21 @@ TEST(ContactPasses, impulses_keep_the_momentum_of_both_bodies) {
 }
 
 TEST(FreeTurn, keeps_the_angular_momentum_and_holds_the_energy) {
-    const Vec3 moments{1, 2, 2.5f};
-    Quat rotation;
-    Vec3 momentum{3, 1, -2};
-    const Vec3 start = momentum;
-    const auto energy = [&] { return momentum.x * momentum.x / 1 + momentum.y * momentum.y / 2 + momentum.z * momentum.z / 2.5f; };
-    const float first = energy();
+    const Vec3d moments{1, 2, 2.5};
+    Quatd rotation;
+    Vec3d momentum{3, 1, -2};
+    const Vec3d start = momentum;
+    const auto energy = [&] { return momentum.x * momentum.x / 1 + momentum.y * momentum.y / 2 + momentum.z * momentum.z / 2.5; };
+    const double first = energy();
     for (int i = 0; i < 24000; ++i) {
-        free_turn(rotation, momentum, moments, 1.0f / 240);
+        free_turn(rotation, momentum, moments, 1.0 / 240);
         ASSERT_NEAR(energy() / first, 1, 1e-3);
     }
-    EXPECT_LT(length(rotate(rotation, momentum) - start), 2e-4f * length(start));
+    EXPECT_LT(length(rotate(rotation, momentum) - start), 1e-10 * length(start));
 }
 
 TEST(FreeTurn, tangents_are_close_and_odd) {
-    for (float x = 0; x <= 1; x += 0.01f) {
+    for (double x = 0; x <= 1; x += 0.01) {
         EXPECT_NEAR(half_angle_tangent(x), std::tan(x), 2e-3 * std::tan(x) + 1e-7);
         EXPECT_EQ(half_angle_tangent(-x), -half_angle_tangent(x));
     }

@@ -251,6 +251,18 @@ TEST(HostileGltf, ManyViewsOfTheSameBytesDoNotGrowWithoutLimit) {
     const auto scene = read_text(text);
     ASSERT_FALSE(scene);
     EXPECT_NE(scene.error().text().find("grows"), std::string::npos) << scene.error().text();
+    // A hundred bytes each that become hulls of kilobytes.
+    std::string shapes, nodes;
+    for (int i = 0; i < 10000; ++i) {
+        shapes.append(i == 0 ? "" : ",").append(R"({"type":"capsule","capsule":{"radiusTop":0.1,"radiusBottom":0.5)");
+        shapes.append(std::to_string(i)).append("}}");
+        nodes.append(i == 0 ? "" : ",").append(R"({"extensions":{"OMI_physics_body":{"collider":{"shape":)");
+        nodes.append(std::to_string(i)).append("}}}}");
+    }
+    const auto cones =
+        read_text(with_nodes(nodes, R"(,"extensions":{"OMI_physics_shape":{"shapes":[)" + shapes + "]}}"));
+    ASSERT_FALSE(cones);
+    EXPECT_NE(cones.error().text().find("grows"), std::string::npos) << cones.error().text();
     // Zeros that no byte of the file stands for.
     EXPECT_FALSE(read_text(with_accessor(R"("componentType":5126,"count":4294967295,"type":"VEC3")")));
 }

@@ -108,12 +108,12 @@ TEST(Sleep, a_body_made_asleep_stays_until_it_is_touched) {
 }
 TEST(Sleep, a_slow_start_on_a_slope_is_not_taken_for_rest) {
     Settings settings;
-    settings.gravity = {0.05f, -9.81f, 0};
+    settings.gravity = {0.1f, -9.81f, 0};
     World world = make_world(settings);
     add_ground(world, {.friction = 0});
     const BodyId box = add(world, {.position = {0, 0.5, 0}}, Box{}, {.material = {.friction = 0}});
     run(world, 4);
-    EXPECT_NEAR(state(world, box).pose.position.x, 0.5 * 0.05 * 16, 0.02);
+    EXPECT_NEAR(state(world, box).pose.position.x, 0.5 * 0.1 * 16, 0.02);
 }
 
 }  // namespace

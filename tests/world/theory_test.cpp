@@ -99,7 +99,7 @@ TEST(Theory, a_stack_of_twenty_boxes_stands_still_and_falls_asleep_within_three_
         const BodyState s = state(world, boxes[i]);
         EXPECT_FALSE(s.awake) << i;
         EXPECT_LT(std::hypot(s.pose.position.x, s.pose.position.z), 1e-3) << i;
-        EXPECT_GT(s.pose.position.y, 0.5 + double(i) - 0.0025 * double(i + 1)) << i;  // contacts are soft
+        EXPECT_GT(s.pose.position.y, 0.5 + double(i) - 0.05) << i;  // contacts are springs
     }
 }
 
@@ -155,7 +155,7 @@ TEST(Theory, a_free_body_keeps_its_angular_momentum_and_energy_for_ten_seconds) 
 
 TEST(Theory, the_tennis_racket_flips_when_the_euler_equations_say) {
     const Vec3 half{0.5f, 0.3f, 0.1f};  // moments: x smallest, y between, z largest
-    const Vec3 velocity{0.05f, 5, 0.05f};
+    const Vec3 velocity{0.2f, 6, 0.1f};
     Settings settings;
     settings.gravity = {};
     World world = make_world(settings);

@@ -1,0 +1,28 @@
+/// Many times as a few numbers.
+#include "bench/timing.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fase::bench {
+namespace {
+
+TEST(Timing, OfNoneIsZero) {
+    EXPECT_EQ(median_of({}), 0);
+    EXPECT_EQ(timing_of({}).worst, 0);
+}
+
+TEST(Timing, MedianIsTheMiddleOrBetweenTheTwo) {
+    EXPECT_EQ(median_of(std::vector<double>{9, 1, 4}), 4);
+    EXPECT_EQ(median_of(std::vector<double>{9, 1, 4, 2}), 3);
+    EXPECT_EQ(median_of(std::vector<double>{7}), 7);
+}
+
+TEST(Timing, MeanAndWorst) {
+    const Timing timing = timing_of(std::vector<double>{1, 2, 9});
+    EXPECT_EQ(timing.mean, 4);
+    EXPECT_EQ(timing.median, 2);
+    EXPECT_EQ(timing.worst, 9);
+}
+
+}  // namespace
+}  // namespace fase::bench

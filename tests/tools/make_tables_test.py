@@ -1,0 +1,63 @@
+"""The page of benchmarks: it agrees with the figures, and shows what the figures say."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import make_tables  # noqa: E402
+
+HEADER = ("date,commit,machine,scene,engine,settings,threads,steps,rounds,mean_ms,median_ms,worst_ms,least_ms,mean_ms_low,"
+          "mean_ms_high,bodies,contacts,hash,top_height,mean_height,drift\n")
+
+
+def row(engine, median, date="2026-01-02", machine="Chip x 2"):
+    name = "ab12" if engine == "fase" else ""
+    return (f'{date},c0ffee,{machine},wall,{engine},"a, b",1,200,3,{median},{median},9,{median},1,2,55,145,{name},9.5,3.5,'
+            "0.001\n")
+
+
+class MakeTables(unittest.TestCase):
+    def write(self, *rows):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        root = Path(folder.name)
+        (root / "bench/results").mkdir(parents=True)
+        (root / "docs").mkdir()
+        (root / make_tables.FIGURES).write_text(HEADER + "".join(rows), encoding="utf-8")
+        return root
+
+    def test_the_page_agrees_with_the_figures(self):
+        self.assertEqual(make_tables.main(["--check", str(ROOT)]), 0)
+
+    def test_a_changed_figure_is_found(self):
+        root = self.write(row("fase", 2))
+        self.assertEqual(make_tables.main([str(root)]), 0)
+        self.assertEqual(make_tables.main(["--check", str(root)]), 0)
+        page = root / make_tables.PAGE
+        page.write_text(page.read_text(encoding="utf-8").replace("2.00", "1.00"), encoding="utf-8")
+        tool = [sys.executable, "-B", str(ROOT / "tools/make_tables.py"), "--check", str(root)]
+        answer = subprocess.run(tool, capture_output=True, text=True, check=False)
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("docs/benchmarks.md: found other figures", answer.stdout)
+
+    def test_the_last_row_counts_and_peers_are_compared_with_fase(self):
+        root = self.write(row("fase", 4), row("bullet", 8), row("fase", 2), row("bullet", 7))
+        rows = make_tables.read_rows(root / make_tables.FIGURES)
+        self.assertEqual([one["median_ms"] for one in rows], ["2", "7"])
+        page = make_tables.page_of(rows)
+        self.assertIn("| wall | bullet | 1 | 55 | 7.00 | 7.00 | 9.00 | 7.00 | 3.50 (3.50) |", page)
+        self.assertIn("| wall | fase | 1 | 55 | 2.00 | 2.00 | 9.00 | 2.00 |  |", page)
+
+    def test_figures_of_other_days_and_machines_are_not_compared(self):
+        rows = make_tables.read_rows(self.write(row("fase", 4), row("bullet", 8, date="2026-01-03")) / make_tables.FIGURES)
+        self.assertEqual(make_tables.times_of(rows[1], rows), "")
+        page = make_tables.page_of(make_tables.read_rows(
+            self.write(row("fase", 4), row("fase", 1, machine="Other x 8")) / make_tables.FIGURES))
+        self.assertEqual(page.count("\n## "), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Writes docs/benchmarks.md from the measured figures in bench/results/step.csv.
+
+Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when the page is not what the
+figures give. Of several rows for one machine, scene, engine and number of threads the last one in the file counts.
+"""
+import csv
+import sys
+from pathlib import Path
+
+FIGURES = "bench/results/step.csv"
+PAGE = "docs/benchmarks.md"
+
+HEAD = """# Benchmarks
+
+Made by `tools/make_tables.py` from `{figures}`; change neither by hand. To add rows and renew the page:
+
+```sh
+build/release/fase bench step --csv {figures} && tools/make_tables.py
+```
+
+Whole steps of 1/60 s, nothing asleep, the same bodies in each engine. Engines take turns of ten steps in one run, so that a
+noisy machine is noisy for all. *Median*, *mean* and *worst* step are medians over the rounds; *least* is the mean over
+the steps of each step's quickest round, which other programs on the machine disturb least. *Times* is an engine's median
+over that of Fase with as many threads (in brackets: the same of *least*). An engine whose pile is lower at the end than the
+others' did not hold it up: *top* and *mean height* are of the bodies' centres, *drift* is their mean way from the
+start. Hashes of Fase are equal for equal commits, whatever the threads and the machine.
+"""
+
+COLUMNS = [
+    "scene", "engine", "threads", "bodies", "median ms", "mean ms", "worst ms", "least ms", "times", "contacts", "top m",
+    "mean height m", "drift m", "hash", "commit", "date",
+]
+
+
+def read_rows(path):
+    """The rows that count, in the order of their first appearance."""
+    last = {}
+    with path.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            last[row["machine"], row["scene"], row["engine"], int(row["threads"]), row["bodies"], row["steps"]] = row
+    return list(last.values())
+
+
+def times_of(row, rows):
+    """How many times as long as Fase's the engine's step took; "" where Fase has no row to compare with."""
+    if row["engine"] == "fase":
+        return ""
+    same = ("machine", "scene", "threads", "bodies", "steps", "date")
+    for other in rows:
+        if other["engine"] == "fase" and all(other[key] == row[key] for key in same):
+            median = float(row["median_ms"]) / float(other["median_ms"])
+            least = float(row["least_ms"]) / float(other["least_ms"])
+            return f"{median:.2f} ({least:.2f})"
+    return ""
+
+
+def cells_of(row, rows):
+    """The row's cells, as COLUMNS names them."""
+    short = {"median_ms": 2, "mean_ms": 2, "worst_ms": 2, "least_ms": 2, "top_height": 3, "mean_height": 3, "drift": 3}
+    number = {key: f"{float(row[key]):.{digits}f}" for key, digits in short.items()}
+    return [
+        row["scene"], row["engine"], row["threads"], row["bodies"], number["median_ms"], number["mean_ms"],
+        number["worst_ms"], number["least_ms"], times_of(row, rows), row["contacts"], number["top_height"],
+        number["mean_height"], number["drift"], row["hash"], row["commit"], row["date"],
+    ]
+
+
+def line_of(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+def page_of(rows):
+    """The whole page as text."""
+    parts = [HEAD.format(figures=FIGURES)]
+    for machine in dict.fromkeys(row["machine"] for row in rows):
+        mine = [row for row in rows if row["machine"] == machine]
+        settings = dict.fromkeys(f"{row['engine']}: {row['settings']}" for row in mine)
+        lines = [f"## {machine}", "", "; ".join(settings) + ".", "", line_of(COLUMNS), line_of(["---"] * len(COLUMNS))]
+        lines += [line_of(cells_of(row, mine)) for row in mine]
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
+def main(arguments):
+    check = "--check" in arguments
+    folders = [argument for argument in arguments if argument != "--check"]
+    root = Path(folders[0] if folders else Path(__file__).parent.parent)
+    figures, page = root / FIGURES, root / PAGE
+    text = page_of(read_rows(figures))
+    if not check:
+        page.write_text(text, encoding="utf-8")
+        return 0
+    if page.is_file() and page.read_text(encoding="utf-8") == text:
+        return 0
+    print(f"{PAGE}: found other figures than in {FIGURES}, need what tools/make_tables.py writes")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
