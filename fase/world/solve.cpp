@@ -110,7 +110,7 @@ void finish(WorldState& state, float seconds) {
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
-            next.turn += next.angular_velocity * seconds;
+            next.turn += turned.vector() * 2.0f;  // what it did, not what its speed says: overlap is undone beside the speed
             // Slow but steady is no rest; a tremble about one place is.
             const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
