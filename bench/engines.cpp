@@ -50,6 +50,7 @@ constexpr EngineInfo all_engines[]{
     {"fase", make_fase},
 #ifdef FASE_PEER_BULLET
     {"bullet", make_bullet},
+    {"bullet_50", make_bullet_50},
 #endif
 };
 

@@ -26,6 +26,25 @@ template <class List> Error unknown(const char* what, const std::string& found, 
     return {Status::BadArgument, what, fmt::format("found \"{}\", need one of {}", found, names), {}};
 }
 
+/// The engines of "all" or of a list like "fase,bullet", in the order of THE list.
+Result<std::vector<const EngineInfo*>> engines_named(const std::string& names) {
+    std::vector<bool> wanted(engines().size(), names == "all");
+    for (std::size_t begin = 0; names != "all" && begin <= names.size();) {
+        const std::size_t end = std::min(names.find(',', begin), names.size());
+        const std::string name = names.substr(begin, end - begin);
+        const auto engine =
+            std::find_if(engines().begin(), engines().end(), [&](const EngineInfo& one) { return one.name == name; });
+        if (engine == engines().end()) return unknown("--engine", name, engines(), "all");
+        wanted[static_cast<std::size_t>(engine - engines().begin())] = true;
+        begin = end + 1;
+    }
+    std::vector<const EngineInfo*> chosen;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i]) chosen.push_back(&engines()[i]);
+    }
+    return chosen;
+}
+
 /// One engine in the run of one scene.
 struct Contender {
     const EngineInfo* info = nullptr;
@@ -155,11 +174,9 @@ Result<std::vector<StepRow>> run_scene(Course& course, const StepScene& kind, st
 std::span<const StepScene> step_scenes() { return all_scenes; }
 
 Result<std::vector<StepRow>> measure_steps(const StepOptions& options, const StepProgress& progress) {
-    std::vector<const EngineInfo*> chosen;
-    for (const EngineInfo& engine : engines()) {
-        if (options.engine == "all" || options.engine == engine.name) chosen.push_back(&engine);
-    }
-    if (chosen.empty()) return unknown("--engine", options.engine, engines(), "all");
+    const Result<std::vector<const EngineInfo*>> named = engines_named(options.engine);
+    if (!named) return named.error();
+    const std::vector<const EngineInfo*>& chosen = *named;
     Course course{options, progress};
     std::vector<StepScene> scenes;
     for (const StepScene& scene : step_scenes()) {

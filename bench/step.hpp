@@ -22,7 +22,7 @@ struct StepScene {
 
 struct StepOptions {
     std::string scene;                   ///< a name of step_scenes(); empty: all
-    std::string engine = "all";          ///< a name of engines(), or "all"
+    std::string engine = "all";          ///< names of engines() with commas between, or "all"
     int threads = 1;                     ///< for engines that have threads
     std::optional<std::uint64_t> steps;  ///< without: the scene's
     int rounds = 3;                      ///< how often each scene is run in each engine

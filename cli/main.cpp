@@ -142,7 +142,8 @@ void add_bench(CLI::App& app, Request& request) {
     group.require_subcommand(1);
     CLI::App& command = *group.add_subcommand("step", "Time whole steps of benchmark scenes");
     add_text(command, "--scene", "One of " + bench_scene_names() + " (default: all)", bench.scene);
-    add_text(command, "--engine", "all (default), or one of " + bench_engine_names(), bench.engine);
+    add_text(command, "--engine", "all (default), or some of " + bench_engine_names() + ", commas between",
+             bench.engine);
     add_whole_number(command, "--threads", "For engines that have threads (default 1)", 1, most_threads,
                      [&bench](std::uint64_t value) { bench.threads = static_cast<int>(value); });
     add_whole_number(command, "--steps", "Steps (default: the scene's)", 1, 100000,

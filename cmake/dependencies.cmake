@@ -6,9 +6,8 @@ find_package(Threads REQUIRED)
 find_package(hwy CONFIG REQUIRED)            # SIMD
 find_package(TBB CONFIG REQUIRED)            # threads
 find_package(zstd CONFIG REQUIRED)           # recordings
-find_package(TinyGLTF CONFIG REQUIRED)       # scenes
 find_package(nlohmann_json CONFIG REQUIRED)  # scenes, reports
 find_package(fmt CONFIG REQUIRED)            # messages
 
-set(FASE_PRIVATE_LIBRARIES hwy::hwy TBB::tbb zstd::libzstd_shared TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json fmt::fmt
+set(FASE_PRIVATE_LIBRARIES hwy::hwy TBB::tbb zstd::libzstd_shared nlohmann_json::nlohmann_json fmt::fmt
                            Threads::Threads)

@@ -5,9 +5,10 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fase)
 
 install(TARGETS fase EXPORT fase-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT fase-targets NAMESPACE fase:: DESTINATION ${package_folder})
-# A file named -inl.hpp is compiled once for every instruction set (Highway) and serves the library's own sources only.
+# A file named -inl.hpp is compiled once for every instruction set (Highway) and serves the library's own sources only, as do
+# the parts of the glTF reader.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/fase ${PROJECT_BINARY_DIR}/include/fase DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "*-inl.hpp" EXCLUDE)
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*-inl.hpp" EXCLUDE PATTERN "scene/gltf" EXCLUDE)
 if(TARGET fase_cli)
   install(TARGETS fase_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

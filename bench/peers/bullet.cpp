@@ -79,11 +79,12 @@ private:
 
 class BulletEngine final : public Engine {
 public:
-    explicit BulletEngine(const EngineOptions& options)
+    BulletEngine(const EngineOptions& options, int iterations)
         : dt_(options.settings.time_step),
           sleep_(options.settings.sleep),
           dispatcher_(&configuration_),
           world_(&dispatcher_, &broad_phase_, &solver_, &configuration_) {
+        world_.getSolverInfo().m_numIterations = iterations;
         world_.setGravity(to_bullet(options.settings.gravity));
     }
     ~BulletEngine() override {
@@ -211,12 +212,20 @@ private:
     btDiscreteDynamicsWorld world_;
 };
 
+Result<std::unique_ptr<Engine>> make(const scene::Scene& scene, const EngineOptions& options, int iterations) {
+    auto engine = std::make_unique<BulletEngine>(options, iterations);
+    if (auto added = engine->add(scene); !added) return added.error();
+    return std::unique_ptr<Engine>(std::move(engine));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Engine>> make_bullet(const scene::Scene& scene, const EngineOptions& options) {
-    auto engine = std::make_unique<BulletEngine>(options);
-    if (auto added = engine->add(scene); !added) return added.error();
-    return std::unique_ptr<Engine>(std::move(engine));
+    return make(scene, options, btContactSolverInfo().m_numIterations);
+}
+
+Result<std::unique_ptr<Engine>> make_bullet_50(const scene::Scene& scene, const EngineOptions& options) {
+    return make(scene, options, 50);
 }
 
 }  // namespace fase::bench

@@ -11,4 +11,7 @@ namespace fase::bench {
 /// Fase. Unsupported for axis locks, gravity scales other than 1, sensors and filters.
 Result<std::unique_ptr<Engine>> make_bullet(const scene::Scene& scene, const EngineOptions& options);
 
+/// The same with 50 iterations a step instead of 10: what it takes until a wall of 100 rows stands.
+Result<std::unique_ptr<Engine>> make_bullet_50(const scene::Scene& scene, const EngineOptions& options);
+
 }  // namespace fase::bench

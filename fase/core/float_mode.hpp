@@ -6,8 +6,8 @@
 
 namespace fase {
 
-/// Round to nearest, denormals kept, traps off, on this thread, for as long as the object lives; then as before. A host program
-/// that flushes denormals to zero gets the same bits as any other.
+/// Round to nearest, denormals kept, traps off, on this thread, for as long as the object lives; then as before. A host
+/// program that flushes denormals to zero gets the same bits as any other.
 class StandardFloats {
 public:
 #if defined(__SSE__)

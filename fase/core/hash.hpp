@@ -24,8 +24,7 @@ class Hasher {
 public:
     /// Adds one integer, enum, bool, float or double; -0.0 and 0.0 differ, as do the NaNs: bits count.
     template <class T>
-        requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-    void add(T value) {
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void add(T value) {
         std::uint64_t word = 0;
         if constexpr (std::is_same_v<T, float>) {
             word = std::bit_cast<std::uint32_t>(value);

@@ -9,8 +9,7 @@ namespace fase {
 
 /// Names one object for its whole life; 64 bits, passed by value. Default: names nothing.
 /// `owner` is the number of the world (or slot map) that gave it out, so that another's ids are refused.
-template <class Tag>
-struct Id {
+template <class Tag> struct Id {
     std::uint32_t index = 0xffffffff;
     std::uint16_t generation = 0;
     std::uint16_t owner = 0;
@@ -20,8 +19,7 @@ struct Id {
 /// Gives out ids over dense slots 0..size()-1 and tells whether an id is still good. Holds no values: arrays beside it
 /// do, indexed by `id.index`. A freed slot is reused with the next generation, last freed first; a slot whose 65,535
 /// generations are used up is retired. All O(1). Not thread-safe for writing; const calls are safe from any thread.
-template <class Tag>
-class IdPool {
+template <class Tag> class IdPool {
 public:
     /// @param owner distinguishes this pool's ids from those of every other pool; any number.
     explicit IdPool(std::uint16_t owner = 0) : owner_(owner) {}

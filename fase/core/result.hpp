@@ -55,19 +55,30 @@ struct Error {
 
 /// A value, or the Error that stands in its place. Test it before it is opened: opening the wrong side is a broken
 /// contract (assert in debug).
-template <class T>
-class [[nodiscard]] Result {
+template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
     Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
     explicit operator bool() const { return state_.index() == 0; }
     [[nodiscard]] bool has_value() const { return state_.index() == 0; }
-    T& operator*() & { assert(has_value()); return *std::get_if<0>(&state_); }
-    T&& operator*() && { assert(has_value()); return std::move(*std::get_if<0>(&state_)); }
-    const T& operator*() const& { assert(has_value()); return *std::get_if<0>(&state_); }
+    T& operator*() & {
+        assert(has_value());
+        return *std::get_if<0>(&state_);
+    }
+    T&& operator*() && {
+        assert(has_value());
+        return std::move(*std::get_if<0>(&state_));
+    }
+    const T& operator*() const& {
+        assert(has_value());
+        return *std::get_if<0>(&state_);
+    }
     T* operator->() { return &**this; }
     const T* operator->() const { return &**this; }
-    const Error& error() const { assert(!has_value()); return *std::get_if<1>(&state_); }
+    const Error& error() const {
+        assert(!has_value());
+        return *std::get_if<1>(&state_);
+    }
     /// Status::Ok, or the error's.
     [[nodiscard]] Status status() const { return has_value() ? Status::Ok : error().status; }
 
@@ -76,14 +87,16 @@ private:
 };
 
 /// Done, or the Error that says why not.
-template <>
-class [[nodiscard]] Result<void> {
+template <> class [[nodiscard]] Result<void> {
 public:
     Result() = default;
     Result(Error error) : error_(std::move(error)), failed_(true) {}
     explicit operator bool() const { return !failed_; }
     [[nodiscard]] bool has_value() const { return !failed_; }
-    const Error& error() const { assert(failed_); return error_; }
+    const Error& error() const {
+        assert(failed_);
+        return error_;
+    }
     [[nodiscard]] Status status() const { return failed_ ? error_.status : Status::Ok; }
 
 private:

@@ -33,7 +33,7 @@ struct BodyTraits {
     LocalPose principal;     ///< centre of mass and principal axes in the body's frame
     std::uint32_t first_collider = no_index;
     std::uint64_t user = 0;
-    MassProperties mass;     ///< in the body's frame
+    MassProperties mass;  ///< in the body's frame
 };
 
 /// A body's place and motion: `position` is the centre of mass, `rotation` turns the principal axes to the world.
@@ -42,10 +42,10 @@ struct BodyMotion {
     Quat rotation;
     Vec3 linear_velocity;
     Vec3 angular_velocity;
-    float sleep_time = 0;            ///< seconds below the sleep speeds and within the slop of one place
-    Vec3 drift;                      ///< metres moved since sleep_time began
-    Vec3 turn;                       ///< radians turned since then
-    std::uint32_t island = no_index; ///< least body index of its island as of the last step
+    float sleep_time = 0;             ///< seconds below the sleep speeds and within the slop of one place
+    Vec3 drift;                       ///< metres moved since sleep_time began
+    Vec3 turn;                        ///< radians turned since then
+    std::uint32_t island = no_index;  ///< least body index of its island as of the last step
 };
 
 /// Forces that act through the next step.
@@ -61,8 +61,7 @@ struct Bodies {
     std::vector<BodyForces> forces;
 
     /// Calls f(name, vector) for each array: packing, snapshots and hashes are made from this table.
-    template <class F>
-    void for_each_field(F&& f) {
+    template <class F> void for_each_field(F&& f) {
         f("traits", traits);
         f("motion", motion);
         f("forces", forces);

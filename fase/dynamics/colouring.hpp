@@ -6,9 +6,9 @@
 
 namespace fase::dynamics {
 
-/// Greedy colouring of the graph whose nodes are movable bodies and whose edges are contacts, 64 colours, the least that is
-/// free at both ends: contacts between two movable bodies take the first colours, contacts with the fixed or kinematic the rest.
-/// The order of the calls decides, nothing else.
+/// Greedy colouring of the graph whose nodes are movable bodies and whose edges are contacts, 64 colours, the least
+/// that is free at both ends: contacts between two movable bodies take the first colours, contacts with the fixed or
+/// kinematic the rest. The order of the calls decides, nothing else.
 class Colouring {
 public:
     static constexpr int two_sided = 40;  ///< colours 0..39
@@ -22,9 +22,7 @@ public:
         return take(a, b, ~(used_[a] | used_[b]) & ((1ull << two_sided) - 1));
     }
     /// Colour of a contact between the movable row b and something that is not moved by it.
-    [[nodiscard]] int colour_one_sided(std::uint32_t b) {
-        return take(b, b, ~used_[b] & ~((1ull << two_sided) - 1));
-    }
+    [[nodiscard]] int colour_one_sided(std::uint32_t b) { return take(b, b, ~used_[b] & ~((1ull << two_sided) - 1)); }
 
 private:
     int take(std::uint32_t a, std::uint32_t b, std::uint64_t free) {

@@ -1,6 +1,6 @@
-/// The passes over blocks of contacts, written once for any lane type V (math/lane.hpp, math/wide-inl.hpp). Included inside
-/// the namespace of each target, hence no #pragma once and no includes.
-/// Source of the soft step: Catto 2024, Solver2D (small steps, relax, restitution last); of the soft constraint: Catto 2011.
+/// The passes over blocks of contacts, written once for any lane type V (math/lane.hpp, math/wide-inl.hpp). Included
+/// inside the namespace of each target, hence no #pragma once and no includes. Source of the soft step: Catto 2024,
+/// Solver2D (small steps, relax, restitution last); of the soft constraint: Catto 2011.
 
 #ifndef FASE_LAMBDA_INLINE
 #define FASE_LAMBDA_INLINE __attribute__((always_inline))
@@ -9,51 +9,33 @@
 #define FASE_INLINE inline __attribute__((always_inline))
 #endif
 
-template <class V>
-struct Vec {
+template <class V> struct Vec {
     V x, y, z;
     friend FASE_INLINE Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend FASE_INLINE Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     friend FASE_INLINE Vec operator*(Vec a, V s) { return {a.x * s, a.y * s, a.z * s}; }
 };
-template <class V>
-FASE_INLINE V dot(Vec<V> a, Vec<V> b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class V>
-FASE_INLINE Vec<V> cross(Vec<V> a, Vec<V> b) {
+template <class V> FASE_INLINE V dot(Vec<V> a, Vec<V> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <class V> FASE_INLINE Vec<V> cross(Vec<V> a, Vec<V> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <class V>
-FASE_INLINE V max_of(V a, V b) {
-    return select_greater(a, b, a, b);
-}
-template <class V>
-FASE_INLINE V min_of(V a, V b) {
-    return select_greater(b, a, a, b);
-}
-template <class V>
-struct Symmetric {
-    V xx, xy, xz, yy, yz, zz;
-};
-template <class V>
-FASE_INLINE Vec<V> operator*(const Symmetric<V>& m, Vec<V> v) {
+template <class V> FASE_INLINE V max_of(V a, V b) { return select_greater(a, b, a, b); }
+template <class V> FASE_INLINE V min_of(V a, V b) { return select_greater(b, a, a, b); }
+template <class V> struct Symmetric { V xx, xy, xz, yy, yz, zz; };
+template <class V> FASE_INLINE Vec<V> operator*(const Symmetric<V>& m, Vec<V> v) {
     return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
             m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
-template <class V>
-FASE_INLINE Vec<V> load3(const float (*rows)[8], int lane) {
+template <class V> FASE_INLINE Vec<V> load3(const float (*rows)[8], int lane) {
     return {V::load(rows[0] + lane), V::load(rows[1] + lane), V::load(rows[2] + lane)};
 }
 /// The inverse rotation of `n` by the quaternion (q, w), less n.
-template <class V>
-FASE_INLINE Vec<V> turned_back_less(Vec<V> q, V w, Vec<V> n) {
+template <class V> FASE_INLINE Vec<V> turned_back_less(Vec<V> q, V w, Vec<V> n) {
     return cross(q, cross(q, n) - n * w) * V::set(2.0f);
 }
 
 /// Velocities of the two bodies of each lane.
-template <class V>
-struct Velocities {
+template <class V> struct Velocities {
     Vec<V> va, wa, vb, wb;
     V mass_a, mass_b, rest_a, rest_b;  // inverse masses ride along in the rows
 
@@ -103,8 +85,7 @@ FASE_INLINE Symmetric<V> gather_inertia(const SolverMass* masses, const std::uin
 }
 
 /// Fills in what follows from the frozen manifold and the bodies as they stand at the begin of the step.
-template <class V>
-void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
     const V zero = V::set(0.0f), one = V::set(1.0f);
     V ma, mb;
     const Symmetric<V> ia = gather_inertia<V>(in.masses, k.a + s, &ma);
@@ -161,8 +142,7 @@ void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
 }
 
 /// Starts with the impulses of the last step.
-template <class V, bool one_sided>
-void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
     V ignored;
     const Symmetric<V> ia = gather_inertia<V>(in.masses, k.a + s, &ignored);
     const Symmetric<V> ib = gather_inertia<V>(in.masses, k.b + s, &ignored);
@@ -182,13 +162,12 @@ void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 
-/// Friction takes this part of its correction a pass: the rest follows in the next ones, and neighbours in a wall do not overshoot each
-/// other.
+/// Friction takes this part of its correction a pass: the rest follows in the next ones, and neighbours in a wall do
+/// not overshoot each other.
 constexpr float friction_gain = 0.7f;
 
 /// One Gauss-Seidel pass. `biased`: soft, pushes overlap out; otherwise it relaxes: hard, and with friction.
-template <class V, bool one_sided, bool biased>
-void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V, bool one_sided, bool biased> void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
     const V zero = V::set(0.0f), one = V::set(1.0f), rate = V::set(1.0f / in.sub_step);
     const V bias_rate = V::set(in.softness.mass_scale * in.softness.bias_rate);
     const V mass_scale = V::set(in.softness.mass_scale), impulse_scale = V::set(in.softness.impulse_scale);
@@ -273,7 +252,8 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
         const V mu = V::load(k.friction + s), gain = V::set(friction_gain);
         const Vec<V> rel2 = u.vb + cross(u.wb, cb) - u.va - cross(u.wa, ca), spin2 = u.wb - u.wa;
         const V old_twist = V::load(k.twist_impulse + s), limit = mu * twist_limit;
-        const V twist = min_of(max_of(old_twist - gain * V::load(k.twist_mass + s) * dot(n, spin2), zero - limit), limit);
+        const V twist =
+            min_of(max_of(old_twist - gain * V::load(k.twist_mass + s) * dot(n, spin2), zero - limit), limit);
         twist.store(k.twist_impulse + s);
         const V d = twist - old_twist;
         const V u1 = dot(rel2, t1) + V::load(k.twist_coupling[0] + s) * d;
@@ -293,8 +273,7 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 
-template <class V>
-void prepare_blocks(ContactBlock* blocks, std::size_t count, const PassInput& in) {
+template <class V> void prepare_blocks(ContactBlock* blocks, std::size_t count, const PassInput& in) {
     for (std::size_t i = 0; i < count; ++i)
         for (int s = 0; s < block_lanes; s += V::lanes) prepare_lanes<V>(blocks[i], s, in);
 }

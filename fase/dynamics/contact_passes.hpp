@@ -14,8 +14,8 @@ enum class Pass {
     Relax,      ///< hard, no push, with friction
 };
 
-/// Runs a pass over `count` blocks that share no movable body. Chooses the instruction set at run time; every one gives the same
-/// bits, as does run_pass_reference(). Safe from several threads on different blocks of a colour.
+/// Runs a pass over `count` blocks that share no movable body. Chooses the instruction set at run time; every one gives
+/// the same bits, as does run_pass_reference(). Safe from several threads on different blocks of a colour.
 void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input);
 
 /// The same one lane at a time: the clear version, the judge of the wide ones.

@@ -10,9 +10,7 @@ void write(float* p, Vec3 v) {
     p[1] = v.y;
     p[2] = v.z;
 }
-Vec3 without_locked(Vec3 v, unsigned locks) {
-    return {locks & 1 ? 0 : v.x, locks & 2 ? 0 : v.y, locks & 4 ? 0 : v.z};
-}
+Vec3 without_locked(Vec3 v, unsigned locks) { return {locks & 1 ? 0 : v.x, locks & 2 ? 0 : v.y, locks & 4 ? 0 : v.z}; }
 /// v, shortened to `most` when it is longer; a NaN or infinite v stays as it is and is caught later.
 Vec3 capped(Vec3 v, float most, bool& clamped) {
     const float squared = length_squared(v);
@@ -22,8 +20,7 @@ Vec3 capped(Vec3 v, float most, bool& clamped) {
 }
 
 /// Turns the momentum about principal axis i by the body's turn of `h`, and adds that turn to `turn`.
-template <int i>
-void turn_about_axis(Quatd& turn, Vec3d& momentum, Vec3d moments, double h) {
+template <int i> void turn_about_axis(Quatd& turn, Vec3d& momentum, Vec3d moments, double h) {
     constexpr int j = (i + 1) % 3, k = (i + 2) % 3;
     if (!(moments[i] > 0)) return;
     const double t = half_angle_tangent(0.5 * h * (momentum[i] / moments[i]));

@@ -4,13 +4,14 @@
 
 namespace fase {
 
-/// How the materials of two colliders become one number; of two modes the one later in this list counts.
-enum class CombineMode : std::uint8_t { Average, GeometricMean, Minimum, Multiply, Maximum };
+/// How the materials of two colliders become one number; of two modes the one later in this list counts
+/// (the order of the glTF extension KHR_physics_rigid_bodies).
+enum class CombineMode : std::uint8_t { GeometricMean, Multiply, Maximum, Minimum, Average };
 
 /// What a surface is like.
 struct Material {
-    float friction = 0.6f;   ///< Coulomb's coefficient, 0 or more
-    float restitution = 0;   ///< 0: no bounce, 1: all of it
+    float friction = 0.6f;  ///< Coulomb's coefficient, 0 or more
+    float restitution = 0;  ///< 0: no bounce, 1: all of it
     CombineMode friction_combine = CombineMode::GeometricMean;
     CombineMode restitution_combine = CombineMode::Maximum;
     friend constexpr bool operator==(const Material&, const Material&) = default;

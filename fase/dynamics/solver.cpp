@@ -171,8 +171,8 @@ void Solver::load_contacts(std::span<const Contact> contacts, std::span<const st
         const Contact& c = contacts[active[i]];
         const std::uint32_t row_a = row_of_body_[c.body_a], row_b = row_of_body_[c.body_b];
         const bool a_moves = motions_[row_a].moves, b_moves = motions_[row_b].moves;
-        int colour = a_moves && b_moves ? colouring_.colour(row_a, row_b)
-                                        : colouring_.colour_one_sided(b_moves ? row_b : row_a);
+        int colour =
+            a_moves && b_moves ? colouring_.colour(row_a, row_b) : colouring_.colour_one_sided(b_moves ? row_b : row_a);
         if (colour == Colouring::none) colour = a_moves && b_moves ? overflow_two_sided : overflow_one_sided;
         slots_[i] = {active[i], static_cast<std::uint8_t>(colour), !b_moves, colours_[colour].contacts++};
         any_restitution_ |= c.restitution > 0;
@@ -248,8 +248,9 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
 }
 
-/// Gives back what each point's material keeps of the speed of approach. The speed is that at the moment of touch, from speed, gap and
-/// forces at the begin of the step: a perfect bounce keeps the energy, whatever part of the step was left at the touch.
+/// Gives back what each point's material keeps of the speed of approach. The speed is that at the moment of touch, from
+/// speed, gap and forces at the begin of the step: a perfect bounce keeps the energy, whatever part of the step was
+/// left at the touch.
 void Solver::bounce(ContactBlock& k, const SolverSettings& settings) {
     const float sub_steps = static_cast<float>(settings.sub_steps), h = settings.time_step / sub_steps;
     for (int lane = 0; lane < block_lanes; ++lane) {
@@ -305,7 +306,8 @@ void Solver::store_contacts(std::span<Contact> contacts, TaskRunner& tasks) cons
             }
             c.approach = fastest;
             c.friction_impulse[0] = block.friction_impulse[0][lane];
-            c.friction_impulse[1] = slot.turned_round ? -block.friction_impulse[1][lane] : block.friction_impulse[1][lane];
+            c.friction_impulse[1] =
+                slot.turned_round ? -block.friction_impulse[1][lane] : block.friction_impulse[1][lane];
             c.twist_impulse = block.twist_impulse[lane];
         }
     });

@@ -32,15 +32,16 @@ struct SolverCounts {
     std::uint32_t colours = 0, overflow = 0, clamped = 0;
 };
 
-/// Holds the memory of the solver from step to step; has no state of its own: the result depends on the arguments alone.
-/// Source: Catto 2024, Solver2D: soft contacts with small steps ("soft step"); Macklin et al. 2019, Small steps in physics simulation.
+/// Holds the memory of the solver from step to step; has no state of its own: the result depends on the arguments
+/// alone. Source: Catto 2024, Solver2D: soft contacts with small steps ("soft step"); Macklin et al. 2019, Small steps
+/// in physics simulation.
 class Solver {
 public:
     /// Rows for the awake bodies (in the order given) from their motion: call first.
     void load_bodies(const Bodies& bodies, std::span<const std::uint32_t> awake, const SolverSettings& settings,
                      TaskRunner& tasks);
-    /// Colours the given contacts (indices into `contacts`, each with points, at least one body movable and loaded) in their order, and fills
-    /// the blocks.
+    /// Colours the given contacts (indices into `contacts`, each with points, at least one body movable and loaded) in
+    /// their order, and fills the blocks.
     void load_contacts(std::span<const Contact> contacts, std::span<const std::uint32_t> active, const Bodies& bodies,
                        const SolverSettings& settings, TaskRunner& tasks);
     /// All sub-steps and restitution.
@@ -59,7 +60,7 @@ private:
     struct Slot {
         std::uint32_t contact;
         std::uint8_t colour;
-        bool turned_round;  ///< the contact's b is immovable: a and b change places in the block
+        bool turned_round;    ///< the contact's b is immovable: a and b change places in the block
         std::uint32_t place;  ///< among the contacts of its colour
     };
     void fill(ContactBlock& block, int lane, const Slot& slot, const Contact& contact, const Bodies& bodies) const;

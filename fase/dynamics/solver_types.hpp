@@ -30,28 +30,28 @@ struct alignas(32) SolverMass {
 };
 static_assert(sizeof(SolverMass) == 32);
 
-/// Eight contacts that share no movable body. Normal velocity is affine in a point's two tangent coordinates, so a contact
-/// carries one frame and a symmetric 3 x 3 matrix instead of a Jacobian a point; bodies get one impulse a pass.
+/// Eight contacts that share no movable body. Normal velocity is affine in a point's two tangent coordinates, so a
+/// contact carries one frame and a symmetric 3 x 3 matrix instead of a Jacobian a point; bodies get one impulse a pass.
 struct alignas(64) ContactBlock {
     std::uint32_t a[8], b[8];  ///< rows of SolverBody; b is always movable (or the last row)
     std::uint32_t contact[8];  ///< index of the Contact; no_index in unused lanes
     float normal[3][8], tangent[3][8];
     float offset_a[3][8], offset_b[3][8];
     float x[4][8], y[4][8];
-    float separation[4][8];    ///< at the begin of the step; huge for points that are not there
+    float separation[4][8];  ///< at the begin of the step; huge for points that are not there
     float impulse[4][8];
-    float point_mass[4][8];    ///< inverse of the effective mass along the normal; 0: no such point
-    float coupling[6][8];      ///< the symmetric 3 x 3: 00 01 02 11 12 22
-    float friction_mass[3][8]; ///< inverse of the tangent 2 x 2: 00 01 11
+    float point_mass[4][8];     ///< inverse of the effective mass along the normal; 0: no such point
+    float coupling[6][8];       ///< the symmetric 3 x 3: 00 01 02 11 12 22
+    float friction_mass[3][8];  ///< inverse of the tangent 2 x 2: 00 01 11
     float twist_mass[8];
-    float twist_coupling[2][8];///< tangent speed from a twist impulse of 1
+    float twist_coupling[2][8];  ///< tangent speed from a twist impulse of 1
     float friction_impulse[2][8];
     float twist_impulse[8];
-    float lever[4][8];         ///< distance of the points from the centre
+    float lever[4][8];  ///< distance of the points from the centre
     float friction[8];
-    float restitution[8];      ///< 0: skipped by the restitution pass
-    float approach[4][8];      ///< m/s at the begin of the step, positive when closing
-    float closing[8];          ///< m/s² by which gravity and forces drive the bodies together
+    float restitution[8];              ///< 0: skipped by the restitution pass
+    float approach[4][8];              ///< m/s at the begin of the step, positive when closing
+    float closing[8];                  ///< m/s² by which gravity and forces drive the bodies together
     float turn_a[4][8], turn_b[4][8];  ///< rotation of the bodies since the manifold was made
     float shift[3][8];                 ///< how the centres moved against each other since then
 };
@@ -75,7 +75,7 @@ struct PassInput {
     SolverBody* bodies = nullptr;
     const SolverMass* masses = nullptr;
     float sub_step = 0;
-    Softness softness;       ///< of this colour
+    Softness softness;  ///< of this colour
     float push_out_speed = 3;
 };
 

@@ -5,8 +5,7 @@
 namespace fase {
 
 /// A 3 x 3 matrix of columns: m * v = x * v.x + y * v.y + z * v.z. Default: zero.
-template <class T>
-struct Mat3Of {
+template <class T> struct Mat3Of {
     Vec3Of<T> x, y, z;
     friend constexpr bool operator==(const Mat3Of&, const Mat3Of&) = default;
     static constexpr Mat3Of identity() { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
@@ -22,20 +21,17 @@ struct Mat3Of {
 using Mat3 = Mat3Of<float>;
 using Mat3d = Mat3Of<double>;
 
-template <class T>
-constexpr Mat3Of<T> transpose(const Mat3Of<T>& m) {
+template <class T> constexpr Mat3Of<T> transpose(const Mat3Of<T>& m) {
     return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}};
 }
 /// transpose(m) * v, without building the transpose.
-template <class T>
-constexpr Vec3Of<T> transpose_times(const Mat3Of<T>& m, Vec3Of<T> v) { return {dot(m.x, v), dot(m.y, v), dot(m.z, v)}; }
-template <class T>
-constexpr Mat3Of<T> abs(const Mat3Of<T>& m) { return {abs(m.x), abs(m.y), abs(m.z)}; }
-template <class T>
-constexpr T determinant(const Mat3Of<T>& m) { return dot(m.x, cross(m.y, m.z)); }
+template <class T> constexpr Vec3Of<T> transpose_times(const Mat3Of<T>& m, Vec3Of<T> v) {
+    return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
+}
+template <class T> constexpr Mat3Of<T> abs(const Mat3Of<T>& m) { return {abs(m.x), abs(m.y), abs(m.z)}; }
+template <class T> constexpr T determinant(const Mat3Of<T>& m) { return dot(m.x, cross(m.y, m.z)); }
 /// The inverse; all zero when the determinant is 0.
-template <class T>
-constexpr Mat3Of<T> inverse(const Mat3Of<T>& m) {
+template <class T> constexpr Mat3Of<T> inverse(const Mat3Of<T>& m) {
     const T d = determinant(m);
     const T s = d != 0 ? 1 / d : T(0);
     return transpose(Mat3Of<T>{cross(m.y, m.z) * s, cross(m.z, m.x) * s, cross(m.x, m.y) * s});

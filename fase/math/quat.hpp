@@ -5,8 +5,7 @@
 namespace fase {
 
 /// A rotation when of length 1: x, y, z are axis * sin(angle / 2), w is cos(angle / 2). Default: no rotation.
-template <class T>
-struct QuatOf {
+template <class T> struct QuatOf {
     T x = 0, y = 0, z = 0, w = 1;
     friend constexpr bool operator==(QuatOf, QuatOf) = default;
     [[nodiscard]] constexpr Vec3Of<T> vector() const { return {x, y, z}; }
@@ -19,33 +18,26 @@ struct QuatOf {
 using Quat = QuatOf<float>;
 using Quatd = QuatOf<double>;
 
-template <class T>
-constexpr QuatOf<T> conjugate(QuatOf<T> q) { return {-q.x, -q.y, -q.z, q.w}; }
-template <class T>
-constexpr T length_squared(QuatOf<T> q) { return q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w; }
+template <class T> constexpr QuatOf<T> conjugate(QuatOf<T> q) { return {-q.x, -q.y, -q.z, q.w}; }
+template <class T> constexpr T length_squared(QuatOf<T> q) { return q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w; }
 /// Of length 1; no rotation when q's length is 0.
-template <class T>
-QuatOf<T> normalized(QuatOf<T> q) {
+template <class T> QuatOf<T> normalized(QuatOf<T> q) {
     const T l = std::sqrt(length_squared(q));
     if (!(l > 0)) return {};
     const T s = 1 / l;
     return {q.x * s, q.y * s, q.z * s, q.w * s};
 }
-template <class T>
-bool is_finite(QuatOf<T> q) { return is_finite(q.vector()) && std::isfinite(q.w); }
+template <class T> bool is_finite(QuatOf<T> q) { return is_finite(q.vector()) && std::isfinite(q.w); }
 /// v rotated by the unit quaternion q.
-template <class T>
-constexpr Vec3Of<T> rotate(QuatOf<T> q, Vec3Of<T> v) {
+template <class T> constexpr Vec3Of<T> rotate(QuatOf<T> q, Vec3Of<T> v) {
     const Vec3Of<T> u = q.vector();
     const Vec3Of<T> t = cross(u, v) * T(2);
     return v + t * q.w + cross(u, t);
 }
 /// v rotated by the inverse of the unit quaternion q.
-template <class T>
-constexpr Vec3Of<T> rotate_back(QuatOf<T> q, Vec3Of<T> v) { return rotate(conjugate(q), v); }
+template <class T> constexpr Vec3Of<T> rotate_back(QuatOf<T> q, Vec3Of<T> v) { return rotate(conjugate(q), v); }
 /// The matrix of the unit quaternion q; its columns are the rotated axes.
-template <class T>
-constexpr Mat3Of<T> to_matrix(QuatOf<T> q) {
+template <class T> constexpr Mat3Of<T> to_matrix(QuatOf<T> q) {
     const T xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
     const T wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
     return {{1 - 2 * (yy + zz), 2 * (xy + wz), 2 * (xz - wy)},
@@ -54,8 +46,7 @@ constexpr Mat3Of<T> to_matrix(QuatOf<T> q) {
 }
 /// The unit quaternion of a rotation matrix (orthonormal, determinant 1). Source: Shepperd 1978, Quaternion from
 /// rotation matrix: the largest of the four components first.
-template <class T>
-QuatOf<T> to_quat(const Mat3Of<T>& m) {
+template <class T> QuatOf<T> to_quat(const Mat3Of<T>& m) {
     const T trace = m.x.x + m.y.y + m.z.z;
     QuatOf<T> q;
     if (trace > 0) {
@@ -70,8 +61,7 @@ QuatOf<T> to_quat(const Mat3Of<T>& m) {
     return normalized(q);
 }
 /// Turns by `angle` radians about the unit vector `axis`. Uses libm: for set-up, never inside a step.
-template <class T>
-QuatOf<T> rotation_about(Vec3Of<T> axis, T angle) {
+template <class T> QuatOf<T> rotation_about(Vec3Of<T> axis, T angle) {
     const T s = std::sin(angle / 2);
     return {axis.x * s, axis.y * s, axis.z * s, std::cos(angle / 2)};
 }

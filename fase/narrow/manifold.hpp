@@ -9,9 +9,10 @@ namespace fase::narrow {
 
 /// One point of contact.
 struct ManifoldPoint {
-    Vec3 at;                    ///< half-way between the two surfaces
-    float separation = 0;       ///< metres along the normal: below 0 when the shapes overlap there
-    std::uint32_t feature = 0;  ///< names the pair of features (vertex, edge, face) that meet: the same from step to step
+    Vec3 at;               ///< half-way between the two surfaces
+    float separation = 0;  ///< metres along the normal: below 0 when the shapes overlap there
+    std::uint32_t feature =
+        0;  ///< names the pair of features (vertex, edge, face) that meet: the same from step to step
 };
 
 /// How two shapes touch: up to 4 points on one plane. `normal` is unit and points from a to b. Frame: that of shape a,
@@ -21,6 +22,5 @@ struct Manifold {
     int count = 0;
     std::array<ManifoldPoint, 4> points;
 };
-
 
 }  // namespace fase::narrow

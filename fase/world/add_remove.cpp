@@ -14,8 +14,10 @@ namespace {
 Result<void> check_def(const BodyDef& def) {
     if (auto r = check_position(def.position, "BodyDef.position"); !r) return r;
     if (auto rotation = usable(def.rotation, "BodyDef.rotation"); !rotation) return rotation.error();
-    if (!is_finite(def.linear_velocity)) return refused("BodyDef.linear_velocity", "a number that is not finite", "m/s");
-    if (!is_finite(def.angular_velocity)) return refused("BodyDef.angular_velocity", "a number that is not finite", "rad/s");
+    if (!is_finite(def.linear_velocity))
+        return refused("BodyDef.linear_velocity", "a number that is not finite", "m/s");
+    if (!is_finite(def.angular_velocity))
+        return refused("BodyDef.angular_velocity", "a number that is not finite", "rad/s");
     if (auto r = check_number(def.linear_damping, 0, "BodyDef.linear_damping"); !r) return r;
     if (auto r = check_number(def.angular_damping, 0, "BodyDef.angular_damping"); !r) return r;
     if (auto r = check_number(def.gravity_scale, -Aabb::infinity, "BodyDef.gravity_scale"); !r) return r;

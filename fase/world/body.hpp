@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "fase/core/ids.hpp"
-#include "fase/dynamics/material.hpp"
 #include "fase/dynamics/body_kind.hpp"
+#include "fase/dynamics/material.hpp"
 #include "fase/geometry/aabb.hpp"
 #include "fase/geometry/mass.hpp"
 #include "fase/pairs/filter.hpp"
@@ -37,25 +37,26 @@ struct BodyDef {
 
 /// One shape on a body.
 struct ColliderDef {
-    LocalPose pose{};         ///< of the shape's frame in the body's
+    LocalPose pose{};  ///< of the shape's frame in the body's
     Material material{};
-    float density = 1000;   ///< kg/m³; counts for bodies whose mass is not given; 0: weighs nothing
+    float density = 1000;  ///< kg/m³; counts for bodies whose mass is not given; 0: weighs nothing
     pairs::CollisionFilter filter{};
-    bool sensor = false;    ///< tells who is inside, pushes nobody, weighs nothing
-    std::uint64_t user = 0; ///< a number of the user's own
+    bool sensor = false;     ///< tells who is inside, pushes nobody, weighs nothing
+    std::uint64_t user = 0;  ///< a number of the user's own
 };
 
 /// What can be read of a body.
 struct BodyState {
     BodyId id;
     BodyKind kind = BodyKind::Dynamic;
-    bool awake = true;        ///< always false for static bodies
-    bool quarantined = false; ///< a number became infinite or NaN in a step: put back to its last good pose and taken out of play
-    Pose pose;                ///< of the body's frame
-    Vec3d centre;             ///< of mass, world
-    Vec3 linear_velocity;     ///< of the centre of mass
+    bool awake = true;  ///< always false for static bodies
+    bool quarantined =
+        false;     ///< a number became infinite or NaN in a step: put back to its last good pose and taken out of play
+    Pose pose;     ///< of the body's frame
+    Vec3d centre;  ///< of mass, world
+    Vec3 linear_velocity;  ///< of the centre of mass
     Vec3 angular_velocity;
-    float mass = 0;           ///< kg; 0 unless dynamic
+    float mass = 0;                     ///< kg; 0 unless dynamic
     std::uint32_t island = 0xffffffff;  ///< number of its island of touching bodies: the least body index in it
     std::uint64_t user = 0;
 };

@@ -13,8 +13,8 @@ namespace {
 
 float dot4(Quat a, Quat b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
 
-/// Whether the manifold may stay as it is: the bodies moved less than `distance` against each other since it was made, and neither
-/// turned by more than about two degrees.
+/// Whether the manifold may stay as it is: the bodies moved less than `distance` against each other since it was made,
+/// and neither turned by more than about two degrees.
 bool may_reuse(const Contact& c, const BodyMotion& a, const BodyMotion& b, Vec3 b_from_a, float distance) {
     constexpr float cosine_squared = 0.9997f;  // of half the angle
     const Vec3 moved = rotate_back(a.rotation, b_from_a) - c.b_in_a;
@@ -25,8 +25,8 @@ bool may_reuse(const Contact& c, const BodyMotion& a, const BodyMotion& b, Vec3 
     return between * between > cosine_squared;
 }
 
-/// Puts a new manifold (in the frame of collider a) into the contact, and finds for each point the impulse that the nearest old
-/// point carried: features change on flush faces, places do not.
+/// Puts a new manifold (in the frame of collider a) into the contact, and finds for each point the impulse that the
+/// nearest old point carried: features change on flush faces, places do not.
 void take_manifold(Contact& c, const narrow::Manifold& manifold, const LocalPose& collider_a, const BodyMotion& a,
                    const BodyMotion& b, Vec3 b_from_a, float match_distance) {
     const Contact old = c;
@@ -101,8 +101,8 @@ bool update_contact(WorldState& state, Contact& c) {
     const LocalPose pose_a = collider_pose(state, ca), pose_b = collider_pose(state, cb);
     const Quat back = conjugate(pose_a.rotation);
     const LocalPose b_in_a{rotate(back, (pose_b.position + b_from_a) - pose_a.position), back * pose_b.rotation};
-    const float margin = c.sensor ? 0.0f
-                                  : state.settings.speculative_distance + state.sweep[c.body_a] + state.sweep[c.body_b];
+    const float margin =
+        c.sensor ? 0.0f : state.settings.speculative_distance + state.sweep[c.body_a] + state.sweep[c.body_b];
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, b_in_a, margin);
     take_manifold(c, manifold, pose_a, a, b, b_from_a, std::min(0.05f, 0.2f * scale));
     return false;

@@ -14,7 +14,8 @@ namespace fase {
 
 /// An error unless friction and restitution are finite and 0 or more.
 Result<void> check(const Material& material);
-/// A unit quaternion near `q`, or an Error for one that cannot be meant: not finite, or its length not within 1e-2 of 1.
+/// A unit quaternion near `q`, or an Error for one that cannot be meant: not finite, or its length not within 1e-2
+/// of 1.
 Result<Quat> usable(Quat q, const std::string& where);
 /// An error unless finite and within `farthest` on every axis.
 Result<void> check_position(Vec3d position, const std::string& where);

@@ -7,7 +7,8 @@
 
 namespace fase {
 
-/// Two colliders began or ceased to touch; a is the one with the smaller index. When one of them was removed, its id is stale.
+/// Two colliders began or ceased to touch; a is the one with the smaller index. When one of them was removed, its id is
+/// stale.
 struct ContactEvent {
     ColliderId a, b;
     friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
@@ -15,10 +16,10 @@ struct ContactEvent {
 /// Two colliders met with at least the restitution threshold's speed.
 struct HitEvent {
     ColliderId a, b;
-    Vec3d point;         ///< world, the deepest point of the contact
-    Vec3 normal;         ///< unit, from a to b
-    float speed = 0;     ///< m/s of approach, before the hit
-    float impulse = 0;   ///< N s along the normal, summed over the contact's points and the step
+    Vec3d point;        ///< world, the deepest point of the contact
+    Vec3 normal;        ///< unit, from a to b
+    float speed = 0;    ///< m/s of approach, before the hit
+    float impulse = 0;  ///< N s along the normal, summed over the contact's points and the step
 };
 /// A body came into a sensor or left it: `visitor` began or ceased to overlap `sensor`.
 struct SensorEvent {

@@ -59,8 +59,7 @@ bool is_awake(const WorldState& state, std::uint32_t contact) {
 }
 
 /// Takes the pairs for which `goes` holds out of `from` and merges them into `into`; both stay sorted.
-template <class F>
-void move_pairs(PairList& from, PairList& into, const F& goes) {
+template <class F> void move_pairs(PairList& from, PairList& into, const F& goes) {
     PairList stay, moved;
     for (std::size_t i = 0; i < from.size(); ++i)
         (goes(from.contacts[i]) ? moved : stay).add(from.pairs[i], from.contacts[i]);
@@ -144,7 +143,8 @@ void wake_wanted_islands(WorldState& state) {
     for (const std::uint32_t body : state.asleep) {
         if (state.bodies.traits[body].quarantined) continue;
         const std::uint32_t island = state.bodies.motion[body].island;
-        if (std::binary_search(islands.begin(), islands.end(), island == no_index ? body : island)) bodies.push_back(body);
+        if (std::binary_search(islands.begin(), islands.end(), island == no_index ? body : island))
+            bodies.push_back(body);
     }
     for (const std::uint32_t body : bodies)
         if (const auto id = state.body_ids.id_at(body)) state.events.woke_up.push_back(*id);

@@ -31,8 +31,7 @@ Vec3d deepest_point(const WorldState& state, const Contact& c) {
     return state.bodies.motion[c.body_a].position + to_double(offset);
 }
 
-template <class E, class F>
-void sort_by(std::vector<E>& events, const F& key) {
+template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
     std::sort(events.begin(), events.end(), [&](const E& x, const E& y) { return key(x) < key(y); });
 }
 
@@ -46,8 +45,8 @@ void publish_events(WorldState& state) {
         if (now != c.touching) {
             const ContactEvent ids = ids_of(state, c);
             if (c.sensor) {
-                const SensorEvent event = state.colliders[c.collider_a].sensor ? SensorEvent{ids.a, ids.b}
-                                                                               : SensorEvent{ids.b, ids.a};
+                const SensorEvent event =
+                    state.colliders[c.collider_a].sensor ? SensorEvent{ids.a, ids.b} : SensorEvent{ids.b, ids.a};
                 (now ? events.sensors_begun : events.sensors_ended).push_back(event);
             } else {
                 (now ? events.contacts_begun : events.contacts_ended).push_back(ids);

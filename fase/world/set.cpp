@@ -116,7 +116,8 @@ Result<void> World::move_kinematic(BodyId body, const Pose& target, float second
     const Pose placed = Pose{target.position, *rotation} * state_->bodies.traits[body.index].principal;
     Quat turn = normalized(placed.rotation * conjugate(motion.rotation));
     if (turn.w < 0) turn = {-turn.x, -turn.y, -turn.z, -turn.w};
-    // The turn q = (axis sin(a/2), cos(a/2)) needs the speed a / seconds; atan(s) = a / 2 by its series in s = tan, halved until small.
+    // The turn q = (axis sin(a/2), cos(a/2)) needs the speed a / seconds; atan(s) = a / 2 by its series in s = tan,
+    // halved until small.
     const float sine = length(turn.vector());
     float angle = 0;
     if (sine > 0) {
@@ -141,7 +142,8 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
     dynamics::BodyTraits& traits = state.bodies.traits[body.index];
     if (kind == BodyKind::Dynamic)
         for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
-            if (!state.colliders[c].sensor && std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
+            if (!state.colliders[c].sensor &&
+                std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
                 return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
     if (traits.kind == kind) return {};
     traits.kind = kind;
@@ -290,8 +292,9 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
     if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_impulse");
     dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
-    const Vec3 angular = motion.angular_velocity +
-                         inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
+    const Vec3 angular =
+        motion.angular_velocity +
+        inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
     if (!is_speed(linear) || !is_speed(angular))
         return refused("World::apply_impulse", "an impulse that makes the velocity infinite", "a smaller one");
     motion.linear_velocity = linear;

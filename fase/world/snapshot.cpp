@@ -20,21 +20,14 @@ concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 struct HashArchive {
     static constexpr bool reads = false;
     Hasher hasher;
-    template <Number T>
-    void number(T& value) {
-        hasher.add(value);
-    }
-    template <class T>
-    void resize(std::vector<T>& v) {
-        hasher.add(v.size());
-    }
+    template <Number T> void number(T& value) { hasher.add(value); }
+    template <class T> void resize(std::vector<T>& v) { hasher.add(v.size()); }
 };
 /// Writes every number as little-endian bytes.
 struct WriteArchive {
     static constexpr bool reads = false;
     std::vector<std::byte> bytes;
-    template <Number T>
-    void number(T& value) {
+    template <Number T> void number(T& value) {
         std::uint64_t word = 0;
         if constexpr (std::is_same_v<T, double>) {
             word = std::bit_cast<std::uint64_t>(value);
@@ -45,8 +38,7 @@ struct WriteArchive {
         }
         for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::byte>(word >> (8 * i)));
     }
-    template <class T>
-    void resize(std::vector<T>& v) {
+    template <class T> void resize(std::vector<T>& v) {
         std::uint64_t size = v.size();
         number(size);
     }
@@ -57,8 +49,7 @@ struct ReadArchive {
     std::span<const std::byte> bytes;
     std::size_t at = 0;
     bool failed = false;
-    template <Number T>
-    void number(T& value) {
+    template <Number T> void number(T& value) {
         if (failed || bytes.size() - at < sizeof(T)) {
             failed = true;
             return;
@@ -77,8 +68,7 @@ struct ReadArchive {
             value = static_cast<T>(word);
         }
     }
-    template <class T>
-    void resize(std::vector<T>& v) {
+    template <class T> void resize(std::vector<T>& v) {
         std::uint64_t size = 0;
         number(size);
         if (failed || size > bytes.size() - at) {  // every element takes a byte at the least
@@ -89,123 +79,74 @@ struct ReadArchive {
     }
 };
 
-template <class A, Number T>
-void describe(A& a, T& value) {
-    a.number(value);
-}
-template <class A, class T>
-void describe(A& a, Vec3Of<T>& v) {
+template <class A, Number T> void describe(A& a, T& value) { a.number(value); }
+template <class A, class T> void describe(A& a, Vec3Of<T>& v) {
     a.number(v.x);
     a.number(v.y);
     a.number(v.z);
 }
-template <class A>
-void describe(A& a, Quat& q) {
+template <class A> void describe(A& a, Quat& q) {
     a.number(q.x);
     a.number(q.y);
     a.number(q.z);
     a.number(q.w);
 }
-template <class A, class... T>
-void all(A& a, T&... values);
-template <class A, class T>
-void describe(A& a, std::vector<T>& v);
-template <class A, class T, std::size_t n>
-void describe(A& a, T (&values)[n]) {
+template <class A, class... T> void all(A& a, T&... values);
+template <class A, class T> void describe(A& a, std::vector<T>& v);
+template <class A, class T, std::size_t n> void describe(A& a, T (&values)[n]) {
     for (T& value : values) describe(a, value);
 }
 
-template <class A>
-void describe(A& a, LocalPose& p) {
-    all(a, p.position, p.rotation);
-}
-template <class A>
-void describe(A& a, Aabb& box) {
-    all(a, box.lo, box.hi);
-}
-template <class A>
-void describe(A& a, broad::Pair& pair) {
-    all(a, pair.a, pair.b);
-}
-template <class A>
-void describe(A& a, MassProperties& m) {
+template <class A> void describe(A& a, LocalPose& p) { all(a, p.position, p.rotation); }
+template <class A> void describe(A& a, Aabb& box) { all(a, box.lo, box.hi); }
+template <class A> void describe(A& a, broad::Pair& pair) { all(a, pair.a, pair.b); }
+template <class A> void describe(A& a, MassProperties& m) {
     all(a, m.mass, m.centre, m.inertia.x, m.inertia.y, m.inertia.z);
 }
-template <class A>
-void describe(A& a, Material& m) {
+template <class A> void describe(A& a, Material& m) {
     all(a, m.friction, m.restitution, m.friction_combine, m.restitution_combine);
 }
-template <class A, class Tag>
-void describe(A& a, Id<Tag>& id) {
+template <class A, class Tag> void describe(A& a, Id<Tag>& id) {
     all(a, id.index, id.generation);
     if constexpr (!std::is_same_v<A, HashArchive>) a.number(id.owner);
 }
-template <class A>
-void describe(A& a, Settings& s) {
+template <class A> void describe(A& a, Settings& s) {
     all(a, s.gravity, s.time_step, s.sub_steps, s.contact_frequency, s.contact_damping_ratio, s.push_out_speed,
         s.restitution_threshold, s.speculative_distance, s.linear_slop, s.contact_reuse_distance, s.box_margin, s.sleep,
-        s.sleep_linear_speed, s.sleep_angular_speed, s.sleep_distance, s.time_to_sleep, s.most_linear_speed, s.most_angular_speed,
-        s.most_pairs);
+        s.sleep_linear_speed, s.sleep_angular_speed, s.sleep_distance, s.sleep_tolerance, s.time_to_sleep,
+        s.most_linear_speed, s.most_angular_speed, s.most_pairs);
 }
-template <class A>
-void describe(A& a, dynamics::BodyTraits& t) {
+template <class A> void describe(A& a, dynamics::BodyTraits& t) {
     all(a, t.kind, t.population, t.locks, t.can_sleep, t.quarantined, t.mass_given, t.linear_damping, t.angular_damping,
         t.gravity_scale, t.inverse_mass, t.inverse_moments, t.reach, t.inner_radius, t.principal, t.first_collider,
         t.user, t.mass);
 }
-template <class A>
-void describe(A& a, dynamics::BodyMotion& m) {
+template <class A> void describe(A& a, dynamics::BodyMotion& m) {
     all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.drift, m.turn, m.island);
 }
-template <class A>
-void describe(A& a, dynamics::BodyForces& f) {
-    all(a, f.force, f.torque);
-}
-template <class A>
-void describe(A& a, Collider& c) {
+template <class A> void describe(A& a, dynamics::BodyForces& f) { all(a, f.force, f.torque); }
+template <class A> void describe(A& a, Collider& c) {
     all(a, c.body, c.next, c.shape, c.sensor, c.in_principal, c.in_body, c.material, c.density, c.filter.category,
         c.filter.mask, c.filter.group, c.user);
 }
-template <class A>
-void describe(A& a, Contact& c) {
-    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.generation_a, c.generation_b, c.count, c.sensor, c.touching,
-        c.frozen, c.pushes, c.friction, c.restitution, c.normal, c.tangent, c.offset_a, c.offset_b, c.x, c.y,
-        c.separation, c.impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.feature, c.rotation_a,
-        c.rotation_b, c.b_from_a, c.b_in_a);
+template <class A> void describe(A& a, Contact& c) {
+    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.generation_a, c.generation_b, c.count, c.sensor,
+        c.touching, c.frozen, c.pushes, c.friction, c.restitution, c.normal, c.tangent, c.offset_a, c.offset_b, c.x,
+        c.y, c.separation, c.impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.feature,
+        c.rotation_a, c.rotation_b, c.b_from_a, c.b_in_a);
 }
-template <class A>
-void describe(A& a, ConvexHull::Face& f) {
+template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
 }
-template <class A>
-void describe(A& a, ConvexHull::Edge& e) {
-    all(a, e.from, e.to, e.face_a, e.face_b);
-}
-template <class A>
-void describe(A& a, Sphere& s) {
-    a.number(s.radius);
-}
-template <class A>
-void describe(A& a, Box& s) {
-    describe(a, s.half);
-}
-template <class A>
-void describe(A& a, Capsule& s) {
-    all(a, s.radius, s.half_length);
-}
-template <class A>
-void describe(A& a, Cylinder& s) {
-    all(a, s.radius, s.half_height);
-}
-template <class A>
-void describe(A& a, ConvexHull& s) {
-    all(a, s.vertices, s.faces, s.face_vertices, s.edges);
-}
-template <class A>
-void describe(A&, HalfSpace&) {}
+template <class A> void describe(A& a, ConvexHull::Edge& e) { all(a, e.from, e.to, e.face_a, e.face_b); }
+template <class A> void describe(A& a, Sphere& s) { a.number(s.radius); }
+template <class A> void describe(A& a, Box& s) { describe(a, s.half); }
+template <class A> void describe(A& a, Capsule& s) { all(a, s.radius, s.half_length); }
+template <class A> void describe(A& a, Cylinder& s) { all(a, s.radius, s.half_height); }
+template <class A> void describe(A& a, ConvexHull& s) { all(a, s.vertices, s.faces, s.face_vertices, s.edges); }
+template <class A> void describe(A&, HalfSpace&) {}
 
-template <class A>
-void describe(A& a, SharedShape& s) {
+template <class A> void describe(A& a, SharedShape& s) {
     std::uint32_t kind = static_cast<std::uint32_t>(s.shape.index());
     all(a, kind, s.users, s.outer_radius, s.inner_radius, s.key);
     if constexpr (A::reads) {
@@ -217,18 +158,13 @@ void describe(A& a, SharedShape& s) {
     std::visit([&](auto& shape) { describe(a, shape); }, s.shape);
 }
 
-template <class A, class T>
-void describe(A& a, std::vector<T>& v) {
+template <class A, class T> void describe(A& a, std::vector<T>& v) {
     a.resize(v);
     for (T& value : v) describe(a, value);
 }
-template <class A, class... T>
-void all(A& a, T&... values) {
-    (describe(a, values), ...);
-}
+template <class A, class... T> void all(A& a, T&... values) { (describe(a, values), ...); }
 
-template <class A, class Tag>
-void describe(A& a, IdPool<Tag>& pool) {
+template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
     std::vector<std::uint16_t> generations;
     std::vector<std::uint8_t> alive;
     std::vector<std::uint32_t> free = pool.free_list();
@@ -246,8 +182,7 @@ void describe(A& a, IdPool<Tag>& pool) {
 }
 
 /// The one list of what a world's state is.
-template <class A>
-void describe(A& a, WorldState& s) {
+template <class A> void describe(A& a, WorldState& s) {
     all(a, s.settings, s.steps, s.time, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces, s.collider_ids,
         s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep, s.active.pairs, s.active.contacts,
         s.resting.pairs, s.resting.contacts, s.contacts, s.free_contacts, s.edited_colliders, s.wake_wanted,
@@ -290,7 +225,8 @@ bool is_consistent(const WorldState& s) {
     for (const PairList* list : {&s.active, &s.resting}) {
         if (list->pairs.size() != list->contacts.size()) return false;
         for (std::size_t i = 0; i < list->size(); ++i) {
-            if (list->pairs[i].a >= colliders || list->pairs[i].b >= colliders || list->contacts[i] >= s.contacts.size())
+            if (list->pairs[i].a >= colliders || list->pairs[i].b >= colliders ||
+                list->contacts[i] >= s.contacts.size())
                 return false;
             const Contact& c = s.contacts[list->contacts[i]];
             if (c.collider_a != list->pairs[i].a || c.collider_b != list->pairs[i].b || c.body_a >= bodies ||
@@ -372,13 +308,15 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         next->static_boxes = std::move(state_->static_boxes);
         next->asleep_boxes = std::move(state_->asleep_boxes);
         next->awake_boxes = std::move(state_->awake_boxes);
-        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes}) boxes->clear();
+        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
+            boxes->clear();
         for (std::uint32_t c = 0; c < next->collider_ids.size(); ++c) {
             if (!next->collider_ids.alive_at(c)) continue;
             const broad::Move move{c, next->boxes[c]};
             boxes_of(*next, next->bodies.traits[next->colliders[c].body].population).insert(std::span(&move, 1));
         }
-        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes}) boxes->commit();
+        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
+            boxes->commit();
         for (std::uint32_t i = 0; i < next->shapes.size(); ++i)
             if (next->shapes[i].users != 0) next->shape_of_key.emplace(next->shapes[i].key, i);
         state_ = std::move(next);

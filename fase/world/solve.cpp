@@ -110,7 +110,8 @@ void finish(WorldState& state, float seconds) {
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
-            next.turn += turned.vector() * 2.0f;  // what it did, not what its speed says: overlap is undone beside the speed
+            next.turn +=
+                turned.vector() * 2.0f;  // what it did, not what its speed says: overlap is undone beside the speed
             // Slow but steady is no rest; a tremble about one place is.
             const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
@@ -120,7 +121,8 @@ void finish(WorldState& state, float seconds) {
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
             // The distance counts within each span of the time to sleep, not from the first rest on.
             const float span = state.settings.time_to_sleep;
-            const bool spans_end = span > 0 && std::floor(next.sleep_time / span) > std::floor((next.sleep_time - seconds) / span);
+            const bool spans_end =
+                span > 0 && std::floor(next.sleep_time / span) > std::floor((next.sleep_time - seconds) / span);
             if (!rests || spans_end) next.drift = next.turn = {};
             state.bodies.motion[body] = next;
         }

@@ -28,7 +28,7 @@ struct Collider {
     std::uint32_t shape = 0;                  ///< index of WorldState::shapes
     bool sensor = false;
     bool unused[3] = {};
-    LocalPose in_principal;                   ///< of the shape in the frame of centre of mass and principal axes
+    LocalPose in_principal;  ///< of the shape in the frame of centre of mass and principal axes
     LocalPose in_body;
     Material material;
     float density = 0;
@@ -60,6 +60,12 @@ struct PairList {
     }
 };
 
+/// How an island rests.
+struct IslandRest {
+    std::uint32_t bodies = 0, restless = 0;
+    bool forbidden = false;  ///< somebody moves too fast, or may not sleep
+};
+
 /// What happened to a collider's box since the last step.
 enum ColliderChange : std::uint8_t {
     moved_box = 1,  ///< it left its grown box
@@ -75,16 +81,16 @@ struct WorldState {
     dynamics::Bodies bodies;
     IdPool<ColliderTag> collider_ids;
     std::vector<Collider> colliders;
-    std::vector<Aabb> boxes;             ///< grown, by collider
-    std::vector<std::uint8_t> changes;   ///< ColliderChange bits, by collider
+    std::vector<Aabb> boxes;            ///< grown, by collider
+    std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider
     std::vector<SharedShape> shapes;
     std::vector<std::uint32_t> free_shapes;
     pairs::PairExclusions exclusions;
 
-    std::vector<std::uint32_t> awake;    ///< body indices, ascending: dynamic ones and moving kinematic ones
-    std::vector<std::uint32_t> asleep;   ///< body indices, ascending
-    PairList active;                     ///< an awake body in each
-    PairList resting;                    ///< none
+    std::vector<std::uint32_t> awake;   ///< body indices, ascending: dynamic ones and moving kinematic ones
+    std::vector<std::uint32_t> asleep;  ///< body indices, ascending
+    PairList active;                    ///< an awake body in each
+    PairList resting;                   ///< none
     std::vector<dynamics::Contact> contacts;
     std::vector<std::uint32_t> free_contacts;
     std::vector<std::uint32_t> edited_colliders;  ///< to ask for pairs in the next step
@@ -103,14 +109,14 @@ struct WorldState {
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;
-    std::vector<float> sweep;                 ///< by body: metres a fast body may move in this step, else 0
+    std::vector<float> sweep;  ///< by body: metres a fast body may move in this step, else 0
     std::vector<broad::Move> askers;
     std::vector<broad::Pair> candidates;
-    std::vector<std::uint32_t> moved;         ///< colliders whose box left its grown box in this step
-    std::vector<std::uint32_t> touching;      ///< contacts to solve in this step
-    std::vector<std::uint8_t> reused;         ///< by active pair: the manifold was kept
+    std::vector<std::uint32_t> moved;     ///< colliders whose box left its grown box in this step
+    std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
+    std::vector<std::uint8_t> reused;     ///< by active pair: the manifold was kept
     std::vector<std::uint32_t> scratch;
-    std::vector<float> least_sleep;
+    std::vector<IslandRest> island_rest;  ///< by island, for the stage "sleep"
     bool stepping = false;
 };
 

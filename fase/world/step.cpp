@@ -8,8 +8,7 @@ namespace fase {
 namespace {
 
 /// Runs a stage and notes its time under its name.
-template <class F>
-void timed(WorldState& state, Stage stage, const F& work) {
+template <class F> void timed(WorldState& state, Stage stage, const F& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;

@@ -56,7 +56,8 @@ void end_contact(WorldState& state, std::uint32_t index) {
 void wake_around_edits(WorldState& state) {
     for (const std::uint32_t contact : state.resting.contacts) {
         const dynamics::Contact& c = state.contacts[contact];
-        const bool changed = !is_current(state, c) || ((state.changes[c.collider_a] | state.changes[c.collider_b]) & edited);
+        const bool changed =
+            !is_current(state, c) || ((state.changes[c.collider_a] | state.changes[c.collider_b]) & edited);
         if (!changed || c.sensor || c.count == 0) continue;
         for (const auto& [collider, generation, body] :
              {std::tuple{c.collider_a, c.generation_a, c.body_a}, std::tuple{c.collider_b, c.generation_b, c.body_b}})
@@ -107,8 +108,8 @@ bool looks_crowded(WorldState& state, std::size_t limit) {
     return crowded;
 }
 
-/// Candidates of the askers in all three sets, sorted, each once. A crowd asks in portions and stops when the limit is reached:
-/// those with the largest numbers go without.
+/// Candidates of the askers in all three sets, sorted, each once. A crowd asks in portions and stops when the limit is
+/// reached: those with the largest numbers go without.
 void find_candidates(WorldState& state) {
     state.candidates.clear();
     const auto limit = static_cast<std::size_t>(state.settings.most_pairs);
@@ -120,7 +121,8 @@ void find_candidates(WorldState& state) {
             state.report.pairs_dropped += static_cast<std::uint32_t>(state.askers.size() - begin);
             break;
         }
-        ask(state, std::span<const broad::Move>(state.askers).subspan(begin, std::min(portion, state.askers.size() - begin)));
+        ask(state,
+            std::span<const broad::Move>(state.askers).subspan(begin, std::min(portion, state.askers.size() - begin)));
     }
     state.report.candidates = state.candidates.size();
     std::erase_if(state.candidates, [&](Pair pair) { return !wanted(state, pair); });

@@ -25,8 +25,8 @@ World::~World() = default;
 Result<World> World::create(const Settings& settings, const Setup& setup) {
     if (auto checked = check(settings); !checked) return checked.error();
     if (setup.threads < 0 || setup.threads > 1024)
-        return Error{Status::BadArgument, "Setup.threads", "found " + std::to_string(setup.threads) + ", need 0 to 1024",
-                     "0 takes all cores"};
+        return Error{Status::BadArgument, "Setup.threads",
+                     "found " + std::to_string(setup.threads) + ", need 0 to 1024", "0 takes all cores"};
     auto structure = broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
     if (!structure) {
         Error error = structure.error();
@@ -52,8 +52,8 @@ Result<StepReport> World::step() { return step(state_->settings.time_step); }
 
 Result<StepReport> World::step(float seconds) {
     if (!(seconds >= 0 && seconds <= 1))
-        return Error{Status::BadArgument, "World::step: seconds",
-                     "found " + std::to_string(seconds) + ", need 0 to 1", "take several steps for longer times"};
+        return Error{Status::BadArgument, "World::step: seconds", "found " + std::to_string(seconds) + ", need 0 to 1",
+                     "take several steps for longer times"};
     if (state_->stepping)
         return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
     try {

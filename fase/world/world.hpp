@@ -22,16 +22,17 @@ struct ContactState {
     ColliderId a, b;
     Vec3 normal;  ///< world, unit, from a to b
     int count = 0;
-    std::array<Vec3d, 4> points;          ///< world
-    std::array<float, 4> separations{};   ///< metres; below 0: overlap
-    std::array<float, 4> impulses{};      ///< N s along the normal in the last sub-step
+    std::array<Vec3d, 4> points;         ///< world
+    std::array<float, 4> separations{};  ///< metres; below 0: overlap
+    std::array<float, 4> impulses{};     ///< N s along the normal in the last sub-step
     std::array<std::uint32_t, 4> features{};
     bool sensor = false;  ///< overlap is only told, nothing is pushed
 };
 
-/// A set of bodies that move, collide and rest. Every call either does what it says or returns an Error and changes nothing
-/// (hash() before and after is equal). Not thread-safe: one thread at a time calls non-const functions, any number the const ones
-/// between them. The same calls give the same bits on every machine, for every thread count and structure.
+/// A set of bodies that move, collide and rest. Every call either does what it says or returns an Error and changes
+/// nothing (hash() before and after is equal). Not thread-safe: one thread at a time calls non-const functions, any
+/// number the const ones between them. The same calls give the same bits on every machine, for every thread count and
+/// structure.
 class World {
 public:
     /// BadArgument when a setting is out of range or no structure has that name.
@@ -89,8 +90,8 @@ public:
     Result<void> exclude_pair(BodyId a, BodyId b);
     Result<void> include_pair(BodyId a, BodyId b);
 
-    // Pushing: dynamic bodies only; others refuse with BadArgument. Forces and torques act through the next step and are
-    // then forgotten; impulses act at once. Points are in the world.
+    // Pushing: dynamic bodies only; others refuse with BadArgument. Forces and torques act through the next step and
+    // are then forgotten; impulses act at once. Points are in the world.
     Result<void> apply_force(BodyId body, Vec3 newtons);
     Result<void> apply_force_at(BodyId body, Vec3 newtons, Vec3d point);
     Result<void> apply_torque(BodyId body, Vec3 newton_metres);
@@ -116,8 +117,8 @@ public:
     [[nodiscard]] std::uint64_t hash() const;
     /// Everything, as bytes that restore() takes; the resumed world goes on to the same bits. Little-endian.
     [[nodiscard]] std::vector<std::byte> snapshot() const;
-    /// Replaces all bodies and settings by the snapshot's; ids that were good when it was taken are good again. Format when the bytes
-    /// are not a snapshot that this version reads; then nothing changes.
+    /// Replaces all bodies and settings by the snapshot's; ids that were good when it was taken are good again. Format
+    /// when the bytes are not a snapshot that this version reads; then nothing changes.
     Result<void> restore(std::span<const std::byte> snapshot);
 
     /// The state behind it, for the stages of the step and for tests of them.

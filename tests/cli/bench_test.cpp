@@ -70,6 +70,7 @@ TEST_F(BenchStep, TheTableGrowsByARowAnEngine) {
 TEST_F(BenchStep, RefusesUnknownScenesAndEngines) {
     expect_error_line(bench({"--scene", "moon"}), 2, "--scene: found \"moon\", need one of large_pyramid");
     expect_error_line(bench({"--engine", "steam"}), 2, "--engine: found \"steam\", need one of all, fase");
+    expect_error_line(bench({"--engine", "fase,"}), 2, "--engine: found \"\"");
     expect_error_line(bench({"--threads", "0"}), 2, "--threads: found \"0\"");
 }
 

@@ -20,14 +20,14 @@ std::string hash_of(std::vector<std::string> arguments) {
 }
 
 TEST(Run, PrintsTheKeysThatScriptsRelyOn) {
-    const scene::JsonDocument document = json_of(run_fase({"run", "stack", "--count", "5", "--steps", "30", "--json"}));
+    const scene::JsonDocument document = json_of(run_fase({"run", "stack", "--count", "5", "--steps", "20", "--json"}));
     const scene::JsonValue run = document.root();
     expect_keys(run, {"scene", "bodies", "shapes", "joints", "steps", "ms_per_step", "stages", "contacts", "awake",
                       "peak_bytes", "hash", "warnings"});
     EXPECT_EQ(text_at(run, "scene"), "stack");
     EXPECT_EQ(number_at(run, "bodies"), 6);
     EXPECT_EQ(number_at(run, "joints"), 0);
-    EXPECT_EQ(number_at(run, "steps"), 30);
+    EXPECT_EQ(number_at(run, "steps"), 20);
     EXPECT_EQ(number_at(run, "contacts"), 5);
     EXPECT_EQ(number_at(run, "awake"), 5);
     EXPECT_GT(number_at(run, "peak_bytes"), 1e6);

@@ -73,15 +73,20 @@ TEST(ContactPasses, wide_lanes_give_the_bits_of_single_ones) {
     for (const bool one_sided : {false, true})
         for (std::uint64_t seed = 0; seed < 50; ++seed) {
             Case wide(seed, 3, one_sided), clear(seed, 3, one_sided);
-            for (const Pass pass : {Pass::Prepare, Pass::WarmStart, Pass::Biased, Pass::Relax, Pass::Biased, Pass::Relax}) {
+            for (const Pass pass :
+                 {Pass::Prepare, Pass::WarmStart, Pass::Biased, Pass::Relax, Pass::Biased, Pass::Relax}) {
                 const auto input = [&](Case& c) {
-                    return PassInput{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
+                    return PassInput{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240),
+                                     3};
                 };
                 run_pass(pass, wide.blocks.data(), wide.blocks.size(), one_sided, input(wide));
                 run_pass_reference(pass, clear.blocks.data(), clear.blocks.size(), one_sided, input(clear));
-                ASSERT_EQ(std::memcmp(wide.blocks.data(), clear.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)), 0);
+                ASSERT_EQ(
+                    std::memcmp(wide.blocks.data(), clear.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)), 0);
                 // The last row takes the writes of unused lanes: nobody reads it.
-                ASSERT_EQ(std::memcmp(wide.bodies.data(), clear.bodies.data(), (wide.bodies.size() - 1) * sizeof(SolverBody)), 0);
+                ASSERT_EQ(
+                    std::memcmp(wide.bodies.data(), clear.bodies.data(), (wide.bodies.size() - 1) * sizeof(SolverBody)),
+                    0);
             }
         }
 }
@@ -125,7 +130,9 @@ TEST(FreeTurn, keeps_the_angular_momentum_and_holds_the_energy) {
     Quatd rotation;
     Vec3d momentum{3, 1, -2};
     const Vec3d start = momentum;
-    const auto energy = [&] { return momentum.x * momentum.x / 1 + momentum.y * momentum.y / 2 + momentum.z * momentum.z / 2.5; };
+    const auto energy = [&] {
+        return momentum.x * momentum.x / 1 + momentum.y * momentum.y / 2 + momentum.z * momentum.z / 2.5;
+    };
     const double first = energy();
     for (int i = 0; i < 24000; ++i) {
         free_turn(rotation, momentum, moments, 1.0 / 240);
@@ -147,7 +154,8 @@ TEST(Islands, sets_join_whatever_the_order_and_are_named_by_their_least_member) 
     for (int round = 0; round < 50; ++round) {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
         for (int i = 0; i < 30; ++i)
-            links.emplace_back(static_cast<std::uint32_t>(random.below(40)), static_cast<std::uint32_t>(random.below(40)));
+            links.emplace_back(static_cast<std::uint32_t>(random.below(40)),
+                               static_cast<std::uint32_t>(random.below(40)));
         DisjointSets forward, backward;
         forward.reset(40);
         backward.reset(40);

@@ -1,4 +1,5 @@
-// The benchmark set-ups of SimBenchmark (Kang, Hwangbo 2018), held to bounds well below the published figures of other engines.
+// The benchmark set-ups of SimBenchmark (Kang, Hwangbo 2018), held to bounds well below the published figures of other
+// engines.
 #include <cmath>
 
 #include "tests/world/worlds.hpp"
@@ -16,7 +17,8 @@ World z_up(Settings settings = {}) {
     return make_world(settings);
 }
 void add_z_ground(World& world, const Material& material) {
-    add(world, {.kind = BodyKind::Static, .rotation = rotation_about(Vec3{1, 0, 0}, 1.57079632679f)}, HalfSpace{}, {.material = material});
+    add(world, {.kind = BodyKind::Static, .rotation = rotation_about(Vec3{1, 0, 0}, 1.57079632679f)}, HalfSpace{},
+        {.material = material});
 }
 
 /// Mean of |v_box - a_box t|² + |v_ball - a_ball t|² over 4 s, in (m/s)².
@@ -25,12 +27,17 @@ double rolling_error(Vec3d direction) {
     const CombineMode least = CombineMode::Minimum;
     add_z_ground(world, {.friction = 0.4f, .friction_combine = least});
     const double overlap = 2e-5;
-    const BodyId box = add(world, {.position = {0, 0, 0.5 - overlap}, .mass = MassProperties{10, {}, Mat3::diagonal({10.f / 12 * 401, 10.f / 12 * 401, 10.f / 12 * 800})}},
-                           Box{{10, 10, 0.5f}}, {.material = {.friction = 0.8f, .friction_combine = least}});
+    const BodyId box =
+        add(world,
+            {.position = {0, 0, 0.5 - overlap},
+             .mass = MassProperties{10, {}, Mat3::diagonal({10.f / 12 * 401, 10.f / 12 * 401, 10.f / 12 * 800})}},
+            Box{{10, 10, 0.5f}}, {.material = {.friction = 0.8f, .friction_combine = least}});
     BodyId first;
     for (int i = 0; i < 5; ++i)
         for (int j = 0; j < 5; ++j) {
-            const BodyId ball = add(world, {.position = {2.0 * i - 4, 2.0 * j - 4, 1.5 - 3 * overlap}, .mass = MassProperties{1, {}, Mat3::diagonal({0.1f, 0.1f, 0.1f})}},
+            const BodyId ball = add(world,
+                                    {.position = {2.0 * i - 4, 2.0 * j - 4, 1.5 - 3 * overlap},
+                                     .mass = MassProperties{1, {}, Mat3::diagonal({0.1f, 0.1f, 0.1f})}},
                                     Sphere{0.5f}, {.material = {.friction = 0.8f, .friction_combine = least}});
             if (i == 0 && j == 0) first = ball;
         }
@@ -66,7 +73,9 @@ TEST(Published, bouncing_spheres_keep_their_energy) {
     const float inertia = 0.4f * 10 * 0.01f;
     for (int i = 0; i < 7; ++i)
         for (int j = 0; j < 7; ++j)
-            balls.push_back(add(world, {.position = {2.0 * i, 2.0 * j, 5}, .mass = MassProperties{10, {}, Mat3::diagonal({inertia, inertia, inertia})}},
+            balls.push_back(add(world,
+                                {.position = {2.0 * i, 2.0 * j, 5},
+                                 .mass = MassProperties{10, {}, Mat3::diagonal({inertia, inertia, inertia})}},
                                 Sphere{0.1f}, {.material = elastic}));
     double sum = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -92,10 +101,12 @@ TEST(Published, a_heap_of_216_spheres_overlaps_little) {
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j)
             for (int k = 0; k < 6; ++k)
-                balls.push_back(add(world, {.position = {0.21 * i + 1e-3 * double(random.unit()), 0.21 * j + 1e-3 * double(random.unit()),
-                                                         0.21 * k + 1e-3 * double(random.unit()) + 0.101},
-                                            .mass = MassProperties{10, {}, Mat3::diagonal({0.04f, 0.04f, 0.04f})}},
-                                    Sphere{0.1f}, {.material = {.friction = 0}}));
+                balls.push_back(
+                    add(world,
+                        {.position = {0.21 * i + 1e-3 * double(random.unit()), 0.21 * j + 1e-3 * double(random.unit()),
+                                      0.21 * k + 1e-3 * double(random.unit()) + 0.101},
+                         .mass = MassProperties{10, {}, Mat3::diagonal({0.04f, 0.04f, 0.04f})}},
+                        Sphere{0.1f}, {.material = {.friction = 0}}));
     double sum = 0;
     std::vector<BodyState> states;
     for (int step = 0; step < 10000; ++step) {

@@ -24,8 +24,7 @@ protected:
         before = world.hash();
     }
     /// The call failed with that status, named where, and left the world as it was.
-    template <class T>
-    void expect_refused(const Result<T>& result, Status status, const char* field) {
+    template <class T> void expect_refused(const Result<T>& result, Status status, const char* field) {
         ASSERT_FALSE(result) << field;
         EXPECT_EQ(result.status(), status) << field;
         EXPECT_NE(result.error().text().find(field), std::string::npos) << result.error().text();
@@ -52,7 +51,8 @@ TEST_F(Refusals, numbers_that_are_not_finite) {
         expect_refused(world.add_body({}, Cylinder{bad, 1}), Status::BadArgument, "radius");
         expect_refused(world.add_body({}, Sphere{}, {.density = bad}), Status::BadArgument, "density");
         expect_refused(world.add_body({}, Sphere{}, {.material = {.friction = bad}}), Status::BadArgument, "friction");
-        expect_refused(world.add_body({}, Sphere{}, {.material = {.restitution = bad}}), Status::BadArgument, "restitution");
+        expect_refused(world.add_body({}, Sphere{}, {.material = {.restitution = bad}}), Status::BadArgument,
+                       "restitution");
         expect_refused(world.set_velocity(box, {bad, 0, 0}, {}), Status::BadArgument, "linear");
         expect_refused(world.set_velocity(box, {}, {0, 0, bad}), Status::BadArgument, "angular");
         expect_refused(world.apply_force(box, {0, bad, 0}), Status::BadArgument, "newtons");

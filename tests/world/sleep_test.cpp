@@ -19,7 +19,10 @@ struct Tower {
     [[nodiscard]] bool all_awake() {
         EXPECT_TRUE(world.step());
         for (const BodyId box : boxes)
-            if (!world.contains(box) || state(world, box).awake) continue; else return false;
+            if (!world.contains(box) || state(world, box).awake)
+                continue;
+            else
+                return false;
         return true;
     }
 };

@@ -27,7 +27,8 @@ double height_after_bounce(float restitution, int bounce, float time_step, doubl
     World world = make_world(settings);
     add_ground(world);
     const double radius = 0.1;
-    const BodyId ball = add(world, {.position = {0, from + radius, 0}}, Sphere{0.1f}, {.material = {.restitution = restitution}});
+    const BodyId ball =
+        add(world, {.position = {0, from + radius, 0}}, Sphere{0.1f}, {.material = {.restitution = restitution}});
     int bounces = 0;
     double highest = 0;
     float before = 0;
@@ -53,7 +54,8 @@ TEST(Theory, an_elastic_ball_keeps_its_height) {
 TEST(Theory, a_bounce_keeps_the_square_of_the_restitution) {
     for (const float e : {0.3f, 0.5f, 0.8f, 0.95f})
         for (const float from : {1.0f, 2.37f, 5.0f})
-            EXPECT_NEAR(height_after_bounce(e, 1, 1.0f / 60, from) / from, e * e, 0.01) << "e " << e << " from " << from;
+            EXPECT_NEAR(height_after_bounce(e, 1, 1.0f / 60, from) / from, e * e, 0.01)
+                << "e " << e << " from " << from;
 }
 
 /// How far a box slides in 3 s on a slope of `degrees` with friction `mu`.
@@ -82,7 +84,8 @@ TEST(Theory, a_box_on_a_slope_sticks_below_the_angle_of_friction_and_slips_above
 TEST(Theory, a_sliding_ball_comes_to_roll_at_five_sevenths_of_its_speed) {
     World world = make_world();
     add_ground(world, {.friction = 0.3f});
-    const BodyId ball = add(world, {.position = {0, 0.5, 0}, .linear_velocity = {7, 0, 0}}, Sphere{0.5f}, {.material = {.friction = 0.3f}});
+    const BodyId ball = add(world, {.position = {0, 0.5, 0}, .linear_velocity = {7, 0, 0}}, Sphere{0.5f},
+                            {.material = {.friction = 0.3f}});
     run(world, 3);
     const BodyState s = state(world, ball);
     EXPECT_NEAR(s.linear_velocity.x, 5, 0.01);
@@ -181,7 +184,8 @@ TEST(Theory, the_tennis_racket_flips_when_the_euler_equations_say) {
     }
     ASSERT_EQ(flips.size(), expected.size());
     ASSERT_GE(flips.size(), 3u);
-    for (std::size_t i = 0; i < flips.size(); ++i) EXPECT_NEAR(flips[i], expected[i], 0.005 * expected[i] + 1.0 / 60) << i;
+    for (std::size_t i = 0; i < flips.size(); ++i)
+        EXPECT_NEAR(flips[i], expected[i], 0.005 * expected[i] + 1.0 / 60) << i;
 }
 
 TEST(Theory, momentum_is_kept_when_bodies_hit_each_other) {
@@ -215,7 +219,8 @@ TEST(Theory, a_rolled_pile_never_gains_energy) {
         world.read_bodies(bodies);
         double sum = 0;
         for (const BodyState& b : bodies)
-            sum += static_cast<double>(b.mass) * (9.81 * b.centre.y + 0.5 * static_cast<double>(length_squared(b.linear_velocity)));
+            sum += static_cast<double>(b.mass) *
+                   (9.81 * b.centre.y + 0.5 * static_cast<double>(length_squared(b.linear_velocity)));
         return sum;
     };
     double most = energy();

@@ -13,8 +13,7 @@ struct Box {
     friend constexpr bool operator==(const Box&, const Box&) = default;
 
     /// Farthest corner in `direction`; the shape is the core grown by core_radius(), here 0.
-    template <class T>
-    [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T> direction) const {
+    template <class T> [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T> direction) const {
         return {direction.x < 0 ? -T(half.x) : T(half.x), direction.y < 0 ? -T(half.y) : T(half.y),
                 direction.z < 0 ? -T(half.z) : T(half.z)};
     }

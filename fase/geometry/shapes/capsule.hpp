@@ -14,8 +14,7 @@ struct Capsule {
     friend constexpr bool operator==(const Capsule&, const Capsule&) = default;
 
     /// Farther end of the segment; the shape is the core grown by core_radius().
-    template <class T>
-    [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T> direction) const {
+    template <class T> [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T> direction) const {
         return {0, direction.y < 0 ? -T(half_length) : T(half_length), 0};
     }
     [[nodiscard]] constexpr float core_radius() const { return radius; }

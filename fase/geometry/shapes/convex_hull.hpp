@@ -33,14 +33,12 @@ struct ConvexHull {
     friend bool operator==(const ConvexHull&, const ConvexHull&) = default;
 
     /// Farthest vertex in `direction`: the first of the farthest, O(vertices).
-    template <class T>
-    [[nodiscard]] Vec3Of<T> core_support(Vec3Of<T> direction) const {
+    template <class T> [[nodiscard]] Vec3Of<T> core_support(Vec3Of<T> direction) const {
         const Vec3 best = vertices[support_index(direction)];
         return {T(best.x), T(best.y), T(best.z)};
     }
     /// Index of core_support()'s vertex.
-    template <class T>
-    [[nodiscard]] std::uint32_t support_index(Vec3Of<T> direction) const {
+    template <class T> [[nodiscard]] std::uint32_t support_index(Vec3Of<T> direction) const {
         std::uint32_t best = 0;
         T farthest = 0;
         for (std::uint32_t i = 0; i < vertices.size(); ++i) {

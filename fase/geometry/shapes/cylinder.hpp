@@ -15,8 +15,7 @@ struct Cylinder {
     friend constexpr bool operator==(const Cylinder&, const Cylinder&) = default;
 
     /// Farthest point in `direction`, on a rim (on the axis when the direction has no sideways part).
-    template <class T>
-    [[nodiscard]] Vec3Of<T> core_support(Vec3Of<T> direction) const {
+    template <class T> [[nodiscard]] Vec3Of<T> core_support(Vec3Of<T> direction) const {
         const T sideways = std::sqrt(direction.x * direction.x + direction.z * direction.z);
         const T scale = sideways > 0 ? T(radius) / sideways : T(0);
         return {direction.x * scale, direction.y < 0 ? -T(half_height) : T(half_height), direction.z * scale};

@@ -13,8 +13,7 @@ struct Sphere {
     friend constexpr bool operator==(const Sphere&, const Sphere&) = default;
 
     /// Farthest point of the core (here one point) in `direction`; the shape is the core grown by core_radius().
-    template <class T>
-    [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T>) const { return {}; }
+    template <class T> [[nodiscard]] constexpr Vec3Of<T> core_support(Vec3Of<T>) const { return {}; }
     [[nodiscard]] constexpr float core_radius() const { return radius; }
 };
 

@@ -174,6 +174,7 @@ void fire_volley(Masonry& masonry, Vec3d centre, Vec3 gravity) {
         Body& ball =
             builder.add(shape, round ? iron : boulder, {.position = now, .linear_velocity = to_float(velocity)});
         ball.def.angular_velocity = any_direction(masonry.random) * 3;
+        ball.def.angular_damping = 1;  // they roll in grass
     }
 }
 
@@ -197,6 +198,8 @@ Scene make_castle(const GenerateOptions& options) {
         strew_rocks(masonry, centre, 120);
         fire_volley(masonry, centre, builder.scene().gravity);
     }
+    for (Body& body : builder.scene().bodies)  // what falls on rubble does not rock for ever
+        if (body.def.kind == BodyKind::Dynamic && body.def.angular_damping == 0) body.def.angular_damping = 0.2f;
     builder.scene().camera = Camera{{27, 17, 38}, {0, 3, 0}};
     return builder.take();
 }
