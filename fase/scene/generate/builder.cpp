@@ -92,7 +92,8 @@ std::vector<Vec3> rock_points(Random& random, float radius, int count) {
         }
     }
     while (static_cast<int>(points.size()) < count) {
-        points.push_back(any_direction(random) * (radius * random.between(0.75f, 1)));
+        const Vec3 direction = any_direction(random);
+        points.push_back(direction * (radius * random.between(0.75f, 1)));
     }
     return points;
 }

@@ -134,9 +134,12 @@ void strew_rocks(Masonry& masonry, Vec3d centre, int count) {
         const int ring = i % 3;
         const SinCos at = sin_cos(2 * pi * (i / 3 + 0.6 * double(masonry.random.unit())) / ((count + 2) / 3));
         const double far = 20 + 3 * ring + double(masonry.random.unit());
-        masonry.builder.add(
-            forms[masonry.random.below(forms.size())], stone_of(masonry, "rock"),
-            {.position = centre + Vec3d{far * at.cos, 0.9, far * at.sin}, .rotation = any_rotation(masonry.random)});
+        // Drawn one after the other: the order of arguments is the compiler's own.
+        const std::uint32_t form = forms[masonry.random.below(forms.size())];
+        const Stuff stuff = stone_of(masonry, "rock");
+        const Quat turn = any_rotation(masonry.random);
+        masonry.builder.add(form, stuff,
+                            {.position = centre + Vec3d{far * at.cos, 0.9, far * at.sin}, .rotation = turn});
     }
 }
 

@@ -64,8 +64,10 @@ Scene make_pile(const GenerateOptions& options) {
             return (k - 0.5 * (side - 1) + 0.1 * double(random.between(-1, 1))) * spacing;
         };
         const double x = place(cell % side), z = place(cell / side);
-        builder.add(shape, painted(name_of(builder.scene().shapes[shape]), random.below(std::size(palette))),
-                    {.position = {x, 1 + spacing * layer, z}, .rotation = any_rotation(random)});
+        const std::size_t colour = random.below(std::size(palette));
+        const Quat turn = any_rotation(random);
+        builder.add(shape, painted(name_of(builder.scene().shapes[shape]), colour),
+                    {.position = {x, 1 + spacing * layer, z}, .rotation = turn});
     }
     builder.scene().camera = Camera{{1.6f * half, 1.7f * half, 2.4f * half}, {0, 0.5f * half, 0}};
     return builder.take();
