@@ -60,6 +60,28 @@ void AnyStructure::clear() {
     std::visit([](auto& s) { s.clear(); }, structure_);
 }
 
+void AnyStructure::set_awake(std::span<const Proxy> proxies, bool awake) {
+    std::visit(
+        [&](auto& s) {
+            for (const Proxy p : proxies) s.set_awake(p, awake);
+        },
+        structure_);
+}
+
+void AnyStructure::build(std::span<const Move> boxes) {
+    std::visit(
+        [&]<class S>(S& s) {
+            if constexpr (BuildsAtOnce<S>) {
+                s.build(boxes);
+            } else {
+                s.clear();
+                for (const Move& m : boxes) s.insert(m.proxy, m.box);
+                s.commit();
+            }
+        },
+        structure_);
+}
+
 void AnyStructure::commit() {
     std::visit([](auto& s) { s.commit(); }, structure_);
 }
@@ -70,6 +92,10 @@ void AnyStructure::find_pairs(std::vector<Pair>& out) const {
 
 void AnyStructure::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     std::visit([&](const auto& s) { broad::find_pairs(tasks, s, out); }, structure_);
+}
+
+void AnyStructure::find_awake_pairs(std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_awake_pairs(s, out); }, structure_);
 }
 
 void AnyStructure::find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const {
@@ -87,8 +113,22 @@ void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> askers
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
-    std::visit([&](const auto& a, const auto& b) { broad::find_pairs_between(a, b, out); }, structure_,
-               other.structure_);
+    std::visit(
+        [&]<class S>(const S& mine) {
+            if (const S* same_kind = std::get_if<S>(&other.structure_)) {
+                broad::find_pairs_between(mine, *same_kind, out);
+                return;
+            }
+            std::vector<Move> askers;
+            if (size() > other.size()) {
+                std::visit([&](const auto& theirs) { stored_boxes(theirs, askers); }, other.structure_);
+                broad::find_pairs_of(mine, askers, {}, out);
+            } else {
+                stored_boxes(mine, askers);
+                other.find_pairs_of(askers, out);
+            }
+        },
+        structure_);
 }
 
 void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
@@ -96,6 +136,32 @@ void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
         out.push_back(p);
         return true;
     });
+}
+
+void AnyStructure::nearest_first(const RayMeasure& measure, float limit,
+                                 FunctionRef<float(Proxy, const Aabb&, float)> visit) const {
+    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, structure_);
+}
+
+void AnyStructure::nearest_first(const PointMeasure& measure, float limit,
+                                 FunctionRef<float(Proxy, const Aabb&, float)> visit) const {
+    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, structure_);
+}
+
+void AnyStructure::cull(const FrustumRegion& region, FunctionRef<void(std::span<const Proxy>, bool)> take) const {
+    std::visit([&](const auto& s) { broad::cull(s, region, take); }, structure_);
+}
+
+void AnyStructure::for_each_leaf(FunctionRef<void(const Leaf&)> visit) const {
+    std::visit([&](const auto& s) { s.for_each_leaf(visit); }, structure_);
+}
+
+StructureStats AnyStructure::stats() const {
+    return std::visit([](const auto& s) { return stats_of(s); }, structure_);
+}
+
+bool AnyStructure::is_awake(Proxy p) const {
+    return std::visit([&](const auto& s) { return s.is_awake(p); }, structure_);
 }
 
 StructureInfo AnyStructure::info() const {

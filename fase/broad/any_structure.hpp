@@ -3,7 +3,10 @@
 #include <span>
 #include <variant>
 
+#include "fase/broad/cull.hpp"
 #include "fase/broad/registry.hpp"
+#include "fase/broad/stats.hpp"
+#include "fase/core/function_ref.hpp"
 #include "fase/core/result.hpp"
 
 namespace fase::broad {
@@ -22,7 +25,10 @@ public:
     void insert(std::span<const Move> boxes);
     void move(std::span<const Move> boxes);
     void erase(std::span<const Proxy> proxies);
+    void set_awake(std::span<const Proxy> proxies, bool awake);
     void clear();
+    /// Replaces all that is stored by boxes that are awake, and commits.
+    void build(std::span<const Move> boxes);
     /// To be called after changes and before anything const.
     void commit();
 
@@ -30,6 +36,8 @@ public:
     /// structure.
     void find_pairs(std::vector<Pair>& out) const;
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+    /// Appends each pair of which one box is awake once, as find_pairs() does.
+    void find_awake_pairs(std::vector<Pair>& out) const;
     /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_asker` does. With
     /// tasks, many askers that are stored here cost little more than find_pairs().
     void find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const;
@@ -47,7 +55,19 @@ public:
         std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
     }
 
+    /// As broad::nearest_first(), compiled once: an indirect call for each box that is visited, none for nodes.
+    void nearest_first(const RayMeasure& measure, float limit,
+                       FunctionRef<float(Proxy, const Aabb&, float)> visit) const;
+    void nearest_first(const PointMeasure& measure, float limit,
+                       FunctionRef<float(Proxy, const Aabb&, float)> visit) const;
+    /// As broad::cull(), compiled once.
+    void cull(const FrustumRegion& region, FunctionRef<void(std::span<const Proxy>, bool)> take) const;
+    /// As Structure::for_each_leaf().
+    void for_each_leaf(FunctionRef<void(const Leaf&)> visit) const;
+
     [[nodiscard]] StructureInfo info() const;
+    [[nodiscard]] StructureStats stats() const;
+    [[nodiscard]] bool is_awake(Proxy p) const;
     [[nodiscard]] std::size_t size() const;
     /// Memory in use, spare capacity included.
     [[nodiscard]] std::size_t bytes() const;

@@ -21,6 +21,7 @@ public:
         FASE_ASSERT(where_[p] == nowhere);
         where_[p] = static_cast<std::uint32_t>(proxies_.size());
         proxies_.push_back(p);
+        awake_.push_back(1);
         for (std::vector<float>& bound : bounds_) bound.push_back(0);
         put(where_[p], box);
     }
@@ -35,16 +36,24 @@ public:
         const Proxy last = proxies_.back();
         put(at, box_at(proxies_.size() - 1));
         proxies_[at] = last;
+        awake_[at] = awake_.back();
         where_[last] = at;
         where_[p] = nowhere;
         proxies_.pop_back();
+        awake_.pop_back();
         for (std::vector<float>& bound : bounds_) bound.pop_back();
     }
     void clear() {
         where_.clear();
         proxies_.clear();
+        awake_.clear();
         for (std::vector<float>& bound : bounds_) bound.clear();
     }
+    void set_awake(Proxy p, bool awake) {
+        FASE_ASSERT(p < where_.size() && where_[p] != nowhere);
+        awake_[where_[p]] = awake ? 1 : 0;
+    }
+    [[nodiscard]] bool is_awake(Proxy p) const { return awake_[where_[p]] != 0; }
     void commit() {}
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
@@ -80,14 +89,28 @@ public:
         }
     }
 
+    /// As find_pairs(), without the pairs of two that rest.
+    void find_awake_pairs(std::vector<Pair>& out) const {
+        const std::size_t first = out.size();
+        find_pairs(out);
+        const auto both_rest = [this](Pair pair) { return !is_awake(pair.a) && !is_awake(pair.b); };
+        out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), both_rest), out.end());
+    }
+
+    template <class Visit> void for_each_leaf(Visit&& visit) const {
+        if (!proxies_.empty()) visit(Leaf{Aabb::everything(), proxies_, 0});
+    }
+
     [[nodiscard]] std::size_t size() const { return proxies_.size(); }
+    [[nodiscard]] std::size_t nodes() const { return 1; }
     [[nodiscard]] std::size_t bytes() const {
-        return sizeof(*this) + (where_.capacity() + proxies_.capacity()) * sizeof(Proxy) +
+        return sizeof(*this) + (where_.capacity() + proxies_.capacity()) * sizeof(Proxy) + awake_.capacity() +
                bounds_.size() * bounds_[0].capacity() * sizeof(float);
     }
     [[nodiscard]] std::string broken_invariant() const {
         for (const std::vector<float>& bound : bounds_)
             if (bound.size() != proxies_.size()) return "an array of bounds has not one number a box";
+        if (awake_.size() != proxies_.size()) return "not every box has a mark that it is awake";
         for (std::size_t i = 0; i < proxies_.size(); ++i)
             if (proxies_[i] >= where_.size() || where_[proxies_[i]] != i) return "a box is not where its proxy points";
         const auto stored = static_cast<std::size_t>(
@@ -100,6 +123,7 @@ private:
     static constexpr std::uint32_t nowhere = 0xffffffff;
     std::array<std::vector<float>, 6> bounds_;  // lo x, y, z, hi x, y, z
     std::vector<Proxy> proxies_;                // of the same place in bounds_
+    std::vector<std::uint8_t> awake_;           // of the same place
     std::vector<std::uint32_t> where_;          // by proxy: its place, or nowhere
 
     void put(std::size_t at, const Aabb& box) {

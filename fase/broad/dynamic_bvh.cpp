@@ -3,17 +3,11 @@
 
 #include <algorithm>
 
+#include "fase/broad/box_store.hpp"
 #include "fase/core/check.hpp"
 
 namespace fase::broad {
 namespace {
-
-/// Boxes whose area is neither NaN nor infinite, nor without meaning.
-bool fits_a_tree(const Aabb& box) {
-    constexpr float far = largest_built;
-    return !is_empty(box) && box.lo.x >= -far && box.lo.y >= -far && box.lo.z >= -far && box.hi.x <= far &&
-           box.hi.y <= far && box.hi.z <= far;
-}
 
 float longest_side(const Aabb& box) {
     const Vec3 e = extent(box);
@@ -29,7 +23,8 @@ void DynamicBvh::insert(Proxy p, const Aabb& box) {
     if (p >= entries_.size()) entries_.resize(p + std::size_t{1});
     FASE_ASSERT(entries_[p].place == Place::Nowhere);
     entries_[p].box = box;
-    if (fits_a_tree(box)) {
+    entries_[p].awake = true;
+    if (is_ordinary(box)) {
         put_in_list(pending_, p, Place::Pending);
     } else {
         put_in_list(apart_, p, Place::Apart);
@@ -43,13 +38,13 @@ void DynamicBvh::move(Proxy p, const Aabb& box) {
     entry.box = box;
     if (entry.leaving) return;
     if (entry.place == Place::Pending) {
-        if (fits_a_tree(box)) return;
+        if (is_ordinary(box)) return;
         take_from_list(pending_, p);
         put_in_list(apart_, p, Place::Apart);
         return;
     }
     const bool stays =
-        entry.place == Place::Tree ? contains(nodes_[entry.where].box, box) && !is_empty(box) : !fits_a_tree(box);
+        entry.place == Place::Tree ? contains(nodes_[entry.where].box, box) && !is_empty(box) : !is_ordinary(box);
     if (stays) return;
     entry.leaving = true;
     leaving_.push_back({p, box.lo - before.lo});
@@ -64,8 +59,18 @@ void DynamicBvh::erase(Proxy p) {
         case Place::Apart: take_from_list(apart_, p); break;
         case Place::Tree: remove_leaf(entry.where); break;
     }
+    resting_ -= entry.awake ? 0 : 1;
     entry.place = Place::Nowhere;
     entry.leaving = false;  // what leaving_ still says of it is skipped
+    marks_old_ = true;
+}
+
+void DynamicBvh::set_awake(Proxy p, bool awake) {
+    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::Nowhere);
+    if (entries_[p].awake == awake) return;
+    entries_[p].awake = awake;
+    awake ? --resting_ : ++resting_;
+    marks_old_ = true;
 }
 
 void DynamicBvh::clear() {
@@ -75,7 +80,10 @@ void DynamicBvh::clear() {
     pending_.clear();
     apart_.clear();
     leaving_.clear();
+    node_awake_.clear();
     leaf_count_ = 0;
+    resting_ = 0;
+    marks_old_ = false;
     changes_ = 0;
     cost_when_built_ = 0;
 }
@@ -87,7 +95,28 @@ void DynamicBvh::build(std::span<const Move> boxes) {
 }
 
 void DynamicBvh::commit() {
-    if (leaving_.empty() && pending_.empty()) return;
+    if (!leaving_.empty() || !pending_.empty()) {
+        follow_boxes();
+        marks_old_ = true;
+    }
+    if (std::exchange(marks_old_, false)) mark_awake_nodes();
+}
+
+/// One pass from the bottom; nothing at all while everything is awake.
+void DynamicBvh::mark_awake_nodes() {
+    node_awake_.clear();
+    if (resting_ == 0 || leaf_count_ == 0) return;
+    node_awake_.resize(nodes_.size(), 0);
+    for (const Entry& entry : entries_) {
+        if (entry.place != Place::Tree || !entry.awake) continue;
+        for (Slot at = entry.where; node_awake_[at] == 0; at = nodes_[at].parent) {
+            node_awake_[at] = 1;
+            if (at == root) break;
+        }
+    }
+}
+
+void DynamicBvh::follow_boxes() {
     sort_out_leaving();
     if (pending_.size() > leaf_count_ / 2) {
         leaving_.clear();
@@ -120,7 +149,7 @@ void DynamicBvh::sort_out_leaving() {
         Entry& entry = entries_[one.proxy];
         if (!entry.leaving) continue;
         entry.leaving = false;
-        if (fits_a_tree(entry.box)) {
+        if (is_ordinary(entry.box)) {
             if (entry.place == Place::Tree) {
                 leaving_[kept++] = one;
             } else {

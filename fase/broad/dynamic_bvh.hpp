@@ -2,6 +2,7 @@
 /// A binary tree of boxes that follows boxes which come, go and move.
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "fase/broad/build/binned_split.hpp"
 #include "fase/broad/local_stack.hpp"
@@ -41,6 +42,8 @@ public:
     void insert(Proxy p, const Aabb& box);
     void move(Proxy p, const Aabb& box);
     void erase(Proxy p);
+    void set_awake(Proxy p, bool awake);
+    [[nodiscard]] bool is_awake(Proxy p) const { return entries_[p].awake; }
     void clear();
     void commit();
     /// Replaces all that is stored by a tree that is built from the top, and commits. O(n log n), 0.5 µs a box.
@@ -50,12 +53,19 @@ public:
 
     /// All pairs by descending the tree against itself.
     void find_pairs(std::vector<Pair>& out) const;
-    /// The same pairs, found by several threads; in an order that does not depend on how many.
+    /// The pairs of which one box is awake: branches in which all rest are not opened against each other.
+    void find_awake_pairs(std::vector<Pair>& out) const;
+    /// The same pairs as find_pairs(out), found by several threads; in an order that does not depend on how many.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
     /// Every pair of a box of this tree and one of `other`, by descending both at once; proxies of both count as one
     /// numbering, and a proxy that is in both is not paired with itself.
     void find_pairs_with(const DynamicBvh& other, std::vector<Pair>& out) const;
 
+    template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const;
+    template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const;
+    template <class Visit> void for_each_leaf(Visit&& visit) const;
+
+    [[nodiscard]] std::size_t nodes() const { return leaf_count_ == 0 ? 1 : 2 * leaf_count_ - 1; }
     [[nodiscard]] std::size_t size() const { return leaf_count_ + pending_.size() + apart_.size(); }
     [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] std::string broken_invariant() const;
@@ -84,6 +94,7 @@ private:
         std::uint32_t where = 0;  // index in pending_ or apart_, or slot
         Place place = Place::Nowhere;
         bool leaving = false;  // is in leaving_
+        bool awake = true;
     };
     struct Leaving {
         Proxy proxy = 0;
@@ -100,10 +111,13 @@ private:
     std::vector<Proxy> pending_, apart_;
     std::vector<Leaving> leaving_;
     std::size_t leaf_count_ = 0;
-    std::size_t changes_ = 0;       // to the tree since its cost was last looked at
-    double cost_when_built_ = 0;    // cost() a leaf
-    std::vector<Slot> order_;       // scratch of refit_all
-    std::vector<BuildItem> items_;  // scratch of rebuild
+    std::size_t resting_ = 0;               // boxes that are not awake
+    bool marks_old_ = false;                // something that node_awake_ follows from has changed
+    std::vector<std::uint8_t> node_awake_;  // by slot: is anything below awake? Empty when nothing rests
+    std::size_t changes_ = 0;               // to the tree since its cost was last looked at
+    double cost_when_built_ = 0;            // cost() a leaf
+    std::vector<Slot> order_;               // scratch of refit_all
+    std::vector<BuildItem> items_;          // scratch of rebuild
 
     void put_in_list(std::vector<Proxy>& list, Proxy p, Place place);
     void take_from_list(std::vector<Proxy>& list, Proxy p);
@@ -124,8 +138,11 @@ private:
     void rebuild_if_spoilt();
     [[nodiscard]] Aabb fattened(const Leaving& leaving) const;
 
-    class Descent;
-    void find_pairs_apart(PairSink& sink) const;
+    void follow_boxes();
+    void mark_awake_nodes();
+
+    template <bool AwakeOnly> class Descent;
+    template <bool AwakeOnly> void find_pairs_apart(PairSink& sink) const;
 };
 
 template <Region R, class Visit> void DynamicBvh::traverse(const R& region, Visit&& visit) const {
@@ -150,6 +167,92 @@ template <Region R, class Visit> void DynamicBvh::traverse(const R& region, Visi
         }
         if (stack.empty()) return;
         at = stack.pop();
+    }
+}
+
+template <Measure M, class Visit> void DynamicBvh::nearest_first(const M& measure, float limit, Visit&& visit) const {
+    struct Branch {
+        Slot slot;
+        float at;
+    };
+    const auto look_at = [&](Proxy p) {
+        const Aabb& exact = entries_[p].box;
+        const float at = measure.at(exact, limit);
+        if (!(at < beyond)) return true;
+        const float wanted = visit(p, exact, at);
+        limit = wanted < limit ? wanted : limit;
+        return limit >= 0;
+    };
+    for (const Proxy p : apart_)
+        if (!look_at(p)) return;
+    if (leaf_count_ == 0) return;
+    LocalStack<Branch, 64> open;
+    open.push({root, measure.at(nodes_[root].box, limit)});
+    while (!open.empty()) {
+        const Branch branch = open.pop();
+        if (!(branch.at <= limit) || branch.at == beyond) continue;
+        const Node& node = nodes_[branch.slot];
+        if (node.is_leaf()) {
+            if (!look_at(node.proxy())) return;
+            continue;
+        }
+        Branch near{node.link, measure.at(nodes_[node.link].box, limit)};
+        Branch far{node.link + 1, measure.at(nodes_[node.link + 1].box, limit)};
+        if (far.at < near.at) std::swap(near, far);
+        if (far.at < beyond) open.push(far);
+        if (near.at < beyond) open.push(near);
+    }
+}
+
+template <SolidRegion R, class Take> void DynamicBvh::cull(const R& region, Take&& take) const {
+    const auto hand_over = [&](Proxy p, bool whole) { take(std::span<const Proxy>(&p, 1), whole); };
+    for (const Proxy p : apart_)
+        if (region.touches(entries_[p].box)) hand_over(p, region.contains(entries_[p].box));
+    if (leaf_count_ == 0) return;
+    struct Branch {
+        Slot slot;
+        bool whole;
+    };
+    LocalStack<Branch, 64> open;
+    open.push({root, false});
+    while (!open.empty()) {
+        const Branch branch = open.pop();
+        const Node& node = nodes_[branch.slot];
+        if (node.is_leaf()) {
+            const Aabb& exact = entries_[node.proxy()].box;
+            if (branch.whole || region.contains(exact)) {
+                hand_over(node.proxy(), true);
+            } else if (region.touches(exact)) {
+                hand_over(node.proxy(), false);
+            }
+            continue;
+        }
+        if (!branch.whole && !region.touches(node.box)) continue;
+        const bool whole = branch.whole || region.contains(node.box);
+        open.push({node.link + 1, whole});
+        open.push({node.link, whole});
+    }
+}
+
+template <class Visit> void DynamicBvh::for_each_leaf(Visit&& visit) const {
+    if (!apart_.empty()) visit(Leaf{Aabb::everything(), apart_, 0});
+    if (leaf_count_ == 0) return;
+    struct Branch {
+        Slot slot;
+        int depth;
+    };
+    LocalStack<Branch, 64> open;
+    open.push({root, 0});
+    while (!open.empty()) {
+        const Branch branch = open.pop();
+        const Node& node = nodes_[branch.slot];
+        if (node.is_leaf()) {
+            const Proxy p = node.proxy();
+            visit(Leaf{node.box, std::span<const Proxy>(&p, 1), branch.depth});
+            continue;
+        }
+        open.push({node.link + 1, branch.depth + 1});
+        open.push({node.link, branch.depth + 1});
     }
 }
 

@@ -16,7 +16,7 @@ bool meet(const Aabb& a, const Aabb& b) {
 
 /// A simultaneous descent into two trees, or into one tree twice: pairs of nodes that overlap and have yet to be
 /// opened, and pairs of leaves whose exact boxes have yet to be tested.
-class DynamicBvh::Descent {
+template <bool AwakeOnly> class DynamicBvh::Descent {
 public:
     Descent(const DynamicBvh& one, const DynamicBvh& two, PairSink& sink) : one_(one), two_(two), sink_(sink) {}
     Descent(const Descent&) = delete;
@@ -52,7 +52,12 @@ private:
         make_room();
         add_if(true, start);
     }
+    /// With AwakeOnly both trees are one, and its marks are there.
+    [[nodiscard]] bool any_awake(NodePair pair) const {
+        return (one_.node_awake_[pair.a] | two_.node_awake_[pair.b]) != 0;
+    }
     void add_if(bool wanted, NodePair pair) {
+        if constexpr (AwakeOnly) wanted = wanted && any_awake(pair);
         const bool both_leaves = (one_.nodes_[pair.a].link & two_.nodes_[pair.b].link & leaf_bit) != 0;
         leaves_[leaf_count_] = pair;
         leaf_count_ += wanted && both_leaves ? 1 : 0;
@@ -87,9 +92,10 @@ private:
 };
 
 /// The pairs that have a box kept apart.
-void DynamicBvh::find_pairs_apart(PairSink& sink) const {
+template <bool AwakeOnly> void DynamicBvh::find_pairs_apart(PairSink& sink) const {
     for (const Proxy p : apart_) {
         traverse(BoxRegion{entries_[p].box}, [&](Proxy q, const Aabb&) {
+            if (AwakeOnly && !entries_[p].awake && !entries_[q].awake) return true;
             const bool both_apart = entries_[q].place == Place::Apart;
             if (!both_apart || p < q) sink.add(p, q);
             return true;
@@ -99,19 +105,26 @@ void DynamicBvh::find_pairs_apart(PairSink& sink) const {
 
 void DynamicBvh::find_pairs(std::vector<Pair>& out) const {
     PairSink sink(out);
-    find_pairs_apart(sink);
-    if (leaf_count_ > 1) Descent(*this, *this, sink).run({root, root});
+    find_pairs_apart<false>(sink);
+    if (leaf_count_ > 1) Descent<false>(*this, *this, sink).run({root, root});
+}
+
+void DynamicBvh::find_awake_pairs(std::vector<Pair>& out) const {
+    if (resting_ == 0) return find_pairs(out);
+    PairSink sink(out);
+    find_pairs_apart<true>(sink);
+    if (leaf_count_ > 1) Descent<true>(*this, *this, sink).run({root, root});
 }
 
 void DynamicBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     constexpr std::size_t wanted_parts = 512;
     PairSink sink(out);
-    find_pairs_apart(sink);
+    find_pairs_apart<false>(sink);
     std::vector<NodePair> parts, next;  // always the whole descent, in finer and finer parts
     if (leaf_count_ > 1) parts.push_back({root, root});
     while (!parts.empty() && parts.size() < wanted_parts) {
         next.clear();
-        Descent descent(*this, *this, sink);
+        Descent<false> descent(*this, *this, sink);
         for (const NodePair& part : parts) descent.split(part, next);
         parts.swap(next);
     }
@@ -119,7 +132,7 @@ void DynamicBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     std::vector<std::vector<Pair>> found(parts.size());
     tasks.run(parts.size(), [&](std::size_t i) {
         PairSink part_sink(found[i]);
-        Descent(*this, *this, part_sink).run(parts[i]);
+        Descent<false>(*this, *this, part_sink).run(parts[i]);
     });
     for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
 }
@@ -141,12 +154,12 @@ void DynamicBvh::find_pairs_with(const DynamicBvh& other, std::vector<Pair>& out
         });
     }
     if (other.leaf_count_ != 0 && overlaps(nodes_[root].box, other.nodes_[root].box))
-        Descent(*this, other, sink).run({root, root});
+        Descent<false>(*this, other, sink).run({root, root});
 }
 
 std::size_t DynamicBvh::bytes() const {
     return sizeof(*this) + nodes_.capacity() * sizeof(Node) + entries_.capacity() * sizeof(Entry) +
-           (free_.capacity() + order_.capacity()) * sizeof(Slot) +
+           (free_.capacity() + order_.capacity()) * sizeof(Slot) + node_awake_.capacity() +
            (pending_.capacity() + apart_.capacity()) * sizeof(Proxy) + leaving_.capacity() * sizeof(Leaving) +
            items_.capacity() * sizeof(BuildItem);
 }
@@ -192,6 +205,11 @@ std::string DynamicBvh::broken_invariant() const {
         const Slot at = open.pop();
         const Node& node = nodes_[at];
         if (slots++ > nodes_.size()) return "a node is reached twice";
+        if (!marks_old_ && !node_awake_.empty()) {
+            const bool below = node.is_leaf() ? entries_[node.proxy()].awake
+                                              : (node_awake_[node.link] | node_awake_[node.link + 1]) != 0;
+            if (below != (node_awake_[at] != 0)) return "a node does not know whether anything below is awake";
+        }
         if (node.is_leaf()) {
             ++leaves;
             const Entry& entry = entries_[node.proxy()];

@@ -70,6 +70,24 @@ template <Structure S> void find_pairs(const S& structure, std::vector<Pair>& ou
     }
 }
 
+/// Appends every overlapping pair of which one is awake, once, smaller proxy first. The structure's own way, or one
+/// query for each box that is awake.
+template <Structure S> void find_awake_pairs(const S& structure, std::vector<Pair>& out) {
+    if constexpr (HoldsAwake<S>) {
+        structure.find_awake_pairs(out);
+    } else {
+        PairSink sink(out);
+        structure.traverse(Everything{}, [&](Proxy p, const Aabb& mine) {
+            if (!structure.is_awake(p)) return true;
+            structure.traverse(BoxRegion{mine}, [&](Proxy q, const Aabb&) {
+                if (p < q || (p != q && !structure.is_awake(q))) sink.add(p, q);
+                return true;
+            });
+            return true;
+        });
+    }
+}
+
 /// Asks for one asker after the other, as find_pairs_of without tasks does; the askers are cut into ranges for the
 /// threads, and the pairs appended in the order of the askers.
 template <Structure S>

@@ -17,11 +17,15 @@ public:
     void insert(Proxy p, const Aabb& box) { boxes_.insert(p, box); }
     void move(Proxy p, const Aabb& box) { boxes_.move(p, box); }
     void erase(Proxy p) { boxes_.erase(p); }
+    void set_awake(Proxy p, bool awake) { boxes_.set_awake(p, awake); }
+    [[nodiscard]] bool is_awake(Proxy p) const { return boxes_.is_awake(p); }
     void clear() { boxes_.clear(); }
     void commit() {}
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
         boxes_.traverse(region, visit);
     }
+    template <class Visit> void for_each_leaf(Visit&& visit) const { boxes_.for_each_leaf(visit); }
+    [[nodiscard]] std::size_t nodes() const { return 1; }
     [[nodiscard]] std::size_t size() const { return boxes_.size(); }
     [[nodiscard]] std::size_t bytes() const { return boxes_.bytes(); }
     [[nodiscard]] std::string broken_invariant() const { return boxes_.broken_invariant(); }
@@ -30,7 +34,8 @@ private:
     BruteForce boxes_;
 };
 static_assert(Structure<Plain> && !FindsOwnPairs<Plain> && !Drawable<Plain>);
-static_assert(FindsOwnPairs<BruteForce>);
+static_assert(!HoldsAwake<Plain> && !BestFirst<Plain> && !TakesWhole<Plain>);
+static_assert(FindsOwnPairs<BruteForce> && HoldsAwake<BruteForce>);
 
 template <class S> S random_set(std::size_t count, Proxy first) {
     Random random(5);

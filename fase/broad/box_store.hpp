@@ -1,0 +1,156 @@
+#pragma once
+/// The boxes of a structure that builds itself anew from them, by proxy and in a row.
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "fase/broad/build/binned_split.hpp"
+#include "fase/broad/structure.hpp"
+#include "fase/core/check.hpp"
+
+namespace fase::broad {
+
+/// Finite, not empty, within `largest_built` of the origin: a box that trees and grids can hold. The others (of
+/// half-spaces; NaN; inverted) are kept apart and tested one by one.
+constexpr bool is_ordinary(const Aabb& box) {
+    constexpr float far = largest_built;
+    return !is_empty(box) && box.lo.x >= -far && box.lo.y >= -far && box.lo.z >= -far && box.hi.x <= far &&
+           box.hi.y <= far && box.hi.z <= far;
+}
+
+/// Two rows of boxes without holes, the ordinary and the odd ones, and where each proxy stands in them. Every change is
+/// O(1) and moves at most one other box. The order of the rows depends on the calls so far alone.
+class BoxStore {
+public:
+    void insert(Proxy p, const Aabb& box) {
+        if (p >= places_.size()) places_.resize(p + std::size_t{1});
+        FASE_ASSERT(places_[p].at == nowhere);
+        places_[p].awake = true;
+        append(p, box);
+        changed_ = true;
+    }
+    void move(Proxy p, const Aabb& box) {
+        FASE_ASSERT(holds(p));
+        Place& place = places_[p];
+        changed_ = true;
+        if (place.odd == !is_ordinary(box)) {
+            row(place.odd)[place.at].box = box;
+            return;
+        }
+        take_out(p);
+        append(p, box);
+    }
+    void erase(Proxy p) {
+        FASE_ASSERT(holds(p));
+        resting_ -= places_[p].awake ? 0 : 1;
+        take_out(p);
+        places_[p] = {};
+        changed_ = true;
+    }
+    void set_awake(Proxy p, bool awake) {
+        FASE_ASSERT(holds(p));
+        if (places_[p].awake == awake) return;
+        places_[p].awake = awake;
+        resting_ += awake ? std::size_t{0} - 1 : 1;
+        awake_changed_ = true;
+    }
+    void clear() {
+        places_.clear();
+        ordinary_.clear();
+        odd_.clear();
+        resting_ = 0;
+        changed_ = true;
+    }
+
+    [[nodiscard]] bool holds(Proxy p) const { return p < places_.size() && places_[p].at != nowhere; }
+    [[nodiscard]] bool is_awake(Proxy p) const { return places_[p].awake; }
+    [[nodiscard]] bool is_odd(Proxy p) const { return places_[p].odd; }
+    /// Of a stored proxy: its place in ordinary(), or in odd().
+    [[nodiscard]] std::uint32_t place(Proxy p) const { return places_[p].at; }
+    [[nodiscard]] const Aabb& box(Proxy p) const { return (places_[p].odd ? odd_ : ordinary_)[places_[p].at].box; }
+    [[nodiscard]] std::span<const Move> ordinary() const { return ordinary_; }
+    [[nodiscard]] std::span<const Move> odd() const { return odd_; }
+    [[nodiscard]] std::size_t size() const { return ordinary_.size() + odd_.size(); }
+    /// How many are not awake.
+    [[nodiscard]] std::size_t resting() const { return resting_; }
+    [[nodiscard]] std::size_t bytes() const {
+        return places_.capacity() * sizeof(Place) + (ordinary_.capacity() + odd_.capacity()) * sizeof(Move);
+    }
+
+    /// Were boxes inserted, moved or erased since the last call? For commit().
+    [[nodiscard]] bool take_changed() { return std::exchange(changed_, false); }
+    /// Did set_awake() change anything since the last call?
+    [[nodiscard]] bool take_awake_changed() { return std::exchange(awake_changed_, false); }
+
+    /// Visits the odd boxes that touch; false when `visit` said stop.
+    template <Region R, class Visit> bool traverse_odd(const R& region, Visit&& visit) const {
+        for (const Move& m : odd_)
+            if (region.touches(m.box) && !visit(m.proxy, m.box)) return false;
+        return true;
+    }
+    /// Calls `add(p, q)` for each pair that has an odd box in it; with `awake_only`, unless both rest.
+    template <class Add> void odd_pairs(bool awake_only, Add&& add) const {
+        for (std::size_t i = 0; i < odd_.size(); ++i) {
+            const Move mine = odd_[i];
+            const auto test = [&](const Move& other) {
+                if (!overlaps(mine.box, other.box)) return;
+                if (awake_only && !is_awake(mine.proxy) && !is_awake(other.proxy)) return;
+                add(mine.proxy, other.proxy);
+            };
+            for (const Move& other : ordinary_) test(other);
+            for (std::size_t k = i + 1; k < odd_.size(); ++k) test(odd_[k]);
+        }
+    }
+    /// The odd boxes as one leaf that is everywhere, when there are any. `scratch` is overwritten.
+    template <class Visit> void odd_leaf(std::vector<Proxy>& scratch, Visit&& visit) const {
+        if (odd_.empty()) return;
+        scratch.clear();
+        for (const Move& m : odd_) scratch.push_back(m.proxy);
+        visit(Leaf{Aabb::everything(), scratch, 0});
+    }
+
+    /// "" when all is well.
+    [[nodiscard]] std::string broken_invariant() const {
+        std::size_t stored = 0, resting = 0;
+        for (Proxy p = 0; p < places_.size(); ++p) {
+            if (!holds(p)) continue;
+            ++stored;
+            resting += is_awake(p) ? 0 : 1;
+            const std::vector<Move>& mine = places_[p].odd ? odd_ : ordinary_;
+            if (place(p) >= mine.size() || mine[place(p)].proxy != p) return "a proxy points at another's box";
+            if (is_ordinary(box(p)) == places_[p].odd) return "a box stands in the wrong row";
+        }
+        if (stored != size()) return "a box has no proxy that points at it";
+        if (resting != resting_) return "the resting boxes are miscounted";
+        return {};
+    }
+
+private:
+    static constexpr std::uint32_t nowhere = 0xffffffff;
+    struct Place {
+        std::uint32_t at = nowhere;
+        bool odd = false, awake = true;
+    };
+    std::vector<Place> places_;  // by proxy
+    std::vector<Move> ordinary_, odd_;
+    std::size_t resting_ = 0;
+    bool changed_ = false, awake_changed_ = false;
+
+    [[nodiscard]] std::vector<Move>& row(bool odd) { return odd ? odd_ : ordinary_; }
+    void append(Proxy p, const Aabb& box) {
+        places_[p].odd = !is_ordinary(box);
+        std::vector<Move>& mine = row(places_[p].odd);
+        places_[p].at = static_cast<std::uint32_t>(mine.size());
+        mine.push_back({p, box});
+    }
+    /// The last of the row takes the place.
+    void take_out(Proxy p) {
+        std::vector<Move>& mine = row(places_[p].odd);
+        const std::uint32_t at = places_[p].at;
+        mine[at] = mine.back();
+        places_[mine[at].proxy].at = at;
+        mine.pop_back();
+    }
+};
+
+}  // namespace fase::broad

@@ -1,0 +1,42 @@
+/// The boxes around what a measure can reach.
+#include "fase/broad/measure.hpp"
+
+#include <cmath>
+
+namespace fase::broad {
+namespace {
+
+/// Room for the roundings of the tests that these bounds stand in front of.
+Aabb with_room(Vec3d lo, Vec3d hi, double reach) {
+    const auto largest = [](Vec3d v) {
+        const auto finite = [](double x) { return std::isfinite(x) ? std::abs(x) : 0.0; };
+        return finite(v.x) + finite(v.y) + finite(v.z);
+    };
+    const double room = 1e-12 * (largest(lo) + largest(hi) + (std::isfinite(reach) ? reach : 0.0));
+    const Vec3d out{room, room, room};
+    return rounded_outward(lo - out, hi + out);
+}
+
+/// 0 along an axis that the ray does not move on, however long it is.
+double moved(double direction, double length) { return direction == 0 ? 0 : direction * length; }
+
+}  // namespace
+
+RayMeasure::RayMeasure(const Ray& ray, Vec3 before, Vec3 after)
+    : ray_(ray), test_(ray), before_(before), after_(after), thick_(!(before == Vec3{} && after == Vec3{})) {
+    const double length = ray.length;
+    const Vec3d by{moved(ray.direction.x, length), moved(ray.direction.y, length), moved(ray.direction.z, length)};
+    const Vec3d end = ray.origin + by;
+    bounds_ = with_room(min(ray.origin, end) + to_double(before), max(ray.origin, end) + to_double(after), length);
+}
+
+Aabb RayMeasure::met_by_origin(const Aabb& box) const {
+    return rounded_outward(to_double(box.lo) - to_double(after_), to_double(box.hi) - to_double(before_));
+}
+
+PointMeasure::PointMeasure(Vec3d point, float radius) : point_(point), radius_(radius) {
+    const double r = radius;
+    bounds_ = with_room(point - Vec3d{r, r, r}, point + Vec3d{r, r, r}, r);
+}
+
+}  // namespace fase::broad

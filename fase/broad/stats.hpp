@@ -1,0 +1,34 @@
+#pragma once
+/// How a structure stands, in numbers: for tables, reports and people who wonder.
+#include "fase/broad/structure.hpp"
+
+namespace fase::broad {
+
+/// What there is to count of a structure.
+struct StructureStats {
+    std::size_t boxes = 0;
+    std::size_t nodes = 0;         ///< inner nodes, leaves, and empty children
+    std::size_t leaves = 0;        ///< that hold a box
+    std::size_t entries = 0;       ///< boxes in leaves; a box counts in each leaf that it is in
+    std::size_t largest_leaf = 0;  ///< entries of the fullest leaf
+    int depth = 0;                 ///< of the deepest leaf; the root's is 0
+    std::size_t bytes = 0;         ///< memory in use, spare capacity included
+    /// Boxes in a leaf, in the mean; 0 when there is none.
+    [[nodiscard]] double occupancy() const {
+        return leaves == 0 ? 0 : static_cast<double>(entries) / static_cast<double>(leaves);
+    }
+};
+
+/// O(n).
+template <Structure S> [[nodiscard]] StructureStats stats_of(const S& structure) {
+    StructureStats stats{.boxes = structure.size(), .nodes = structure.nodes(), .bytes = structure.bytes()};
+    structure.for_each_leaf([&](const Leaf& leaf) {
+        ++stats.leaves;
+        stats.entries += leaf.proxies.size();
+        stats.largest_leaf = leaf.proxies.size() > stats.largest_leaf ? leaf.proxies.size() : stats.largest_leaf;
+        stats.depth = leaf.depth > stats.depth ? leaf.depth : stats.depth;
+    });
+    return stats;
+}
+
+}  // namespace fase::broad
