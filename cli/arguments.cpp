@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/output.hpp"
+#include "fase/broad/any_structure.hpp"
 
 namespace fase::cli {
 namespace {
@@ -58,6 +59,26 @@ CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string&
         text = value;
     };
     return app.add_option_function<std::string>(name, parse, what);
+}
+
+CLI::Option* add_threads(CLI::App& app, const std::string& what, std::uint64_t least, int& threads) {
+    return add_whole_number(app, "--threads", what, least, 1024, threads);
+}
+
+CLI::Option* add_structure(CLI::App& app, const std::string& what, std::string& structure) {
+    return add_text(app, "--structure", what + broad::AnyStructure::names(), structure);
+}
+
+CLI::Option* add_count(CLI::App& app, const std::string& what, std::size_t& count) {
+    return add_whole_number(app, "--count", what, 1, 1'000'000, count);
+}
+
+CLI::Option* add_seed(CLI::App& app, const std::string& what, std::uint64_t& seed) {
+    return add_whole_number(app, "--seed", what, 0, ~0ull, seed);
+}
+
+CLI::Option* add_json(CLI::App& app, bool& json) {
+    return app.add_flag("--json", json, "Print one JSON value and nothing else");
 }
 
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {

@@ -10,9 +10,11 @@
 
 #include "bench/engine.hpp"
 #include "bench/table_file.hpp"
+#include "cli/arguments.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/start.hpp"
 #include "fase/scene/json.hpp"
 
 namespace fase::cli {
@@ -114,10 +116,10 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
 
 }  // namespace
 
-std::string bench_scene_names() { return names_of(bench::step_scenes()); }
-std::string bench_engine_names() { return names_of(bench::engines()); }
-
 int run_bench_step(const BenchStepOptions& options) {
+    if (!options.csv.empty()) {
+        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+    }
     const ProgressForm form = progress_form(options.json);
     const Interrupts interrupts;
     std::vector<bench::StepRow> rows;
@@ -148,6 +150,27 @@ int run_bench_step(const BenchStepOptions& options) {
     const bool all_repeat =
         std::all_of(rows.begin(), rows.end(), [](const bench::StepRow& row) { return row.repeats || !row.hash; });
     return all_repeat ? exit_ok : exit_check_failed;
+}
+
+void add_bench_step(CLI::App& bench_group, Start& start) {
+    auto& bench = start.options<BenchStepOptions>();
+    CLI::App& command = *bench_group.add_subcommand("step", "Time whole steps of benchmark scenes");
+    add_text(command, "--scene", "One of " + names_of(bench::step_scenes()) + " (default: all)", bench.scene);
+    add_text(command, "--engine", "all (default), or some of " + names_of(bench::engines()) + ", commas between",
+             bench.engine);
+    add_threads(command, "For engines that have threads (default 1)", 1, bench.threads);
+    add_whole_number(command, "--steps", "Steps (default: the scene's)", 1, 100000, bench.steps);
+    add_whole_number(command, "--rounds", "How often it is all done (default 3)", 1, 1000, bench.rounds);
+    add_count(command, "Bodies, roughly (default: the scene's)", bench.count);
+    add_text(command, "--csv", "Add the rows to this table", bench.csv);
+    add_json(command, bench.json);
+    command.footer(
+        "\nExamples:\n"
+        "  fase bench step --scene large_pyramid\n"
+        "  fase bench step --engine fase --threads 4 --json\n"
+        "\nEngines take turns in one run, a few steps each, so that a noisy machine is noisy for all.\n"
+        "Exit code 1: the rounds of an engine that is deterministic ended in different states.");
+    start.on(command, [&bench] { return run_bench_step(bench); });
 }
 
 }  // namespace fase::cli

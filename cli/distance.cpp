@@ -9,6 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "cli/arguments.hpp"
+#include "cli/output.hpp"
+#include "cli/start.hpp"
 #include "fase/narrow/distance.hpp"
 #include "fase/scene/files.hpp"
 #include "fase/scene/json.hpp"
@@ -190,17 +193,6 @@ Result<std::vector<Verdict>> judge_file(const std::string& file) {
     return verdicts;
 }
 
-/// Text that can do no harm on a terminal.
-std::string plain(std::string_view text) {
-    std::string safe;
-    for (const char c : text) {
-        const bool quote = c == '"' || c == '\\';
-        const std::string one = quote ? std::string(1, c) : scene::quoted({&c, 1});
-        safe += quote || static_cast<unsigned char>(c) >= 0x80 ? std::string(1, c) : one.substr(1, one.size() - 2);
-    }
-    return safe;
-}
-
 std::string json_of(const std::optional<double>& number) {
     return number && std::isfinite(*number) ? fmt::format("{}", *number) : "null";
 }
@@ -229,11 +221,11 @@ void print_json(const std::vector<Verdict>& verdicts, const Summary& sum) {
 void print_lines(const std::vector<Verdict>& verdicts, const Summary& sum) {
     std::string text;
     for (const Verdict& v : verdicts) {
-        text += plain(v.id);
+        text += printable(v.id);
         if (v.distance) text += fmt::format("  distance {:.9g}", *v.distance);
         if (v.error) text += fmt::format("  published {:.9g}  error {:.2g}", *v.published, *v.error);
         if (!v.skipped.empty()) {
-            text += fmt::format("  skipped: {}", plain(v.skipped));
+            text += fmt::format("  skipped: {}", printable(v.skipped));
         } else {
             text += v.within ? "  ok" : "  WRONG";
         }
@@ -249,11 +241,10 @@ void print_lines(const std::vector<Verdict>& verdicts, const Summary& sum) {
 int run_distance(const DistanceOptions& options) {
     const Result<std::vector<Verdict>> verdicts = judge_file(options.file);
     if (!verdicts) {
-        const Error& error = verdicts.error();
-        const bool names_file = error.where.rfind(options.file, 0) == 0;
-        const std::string where = names_file ? error.where : options.file + ":" + error.where;
-        fmt::print(stderr, "fase: error: {}: {}\n", plain(where), plain(error.problem));
-        return error.status == Status::Io ? 3 : 2;
+        Error error = verdicts.error();
+        const bool names_file = error.where.starts_with(options.file);
+        if (!names_file) error.where = options.file + ":" + error.where;
+        return refuse(error);
     }
     Summary sum;
     sum.total = verdicts->size();
@@ -267,7 +258,16 @@ int run_distance(const DistanceOptions& options) {
     } else {
         print_lines(*verdicts, sum);
     }
-    return sum.within + sum.skipped == sum.total ? 0 : 1;
+    return sum.within + sum.skipped == sum.total ? exit_ok : exit_check_failed;
+}
+
+void add_distance(CLI::App& app, Start& start) {
+    auto& distance = start.options<DistanceOptions>();
+    CLI::App& command = *app.add_subcommand("distance", "Hold distances of pairs of shapes against published ones");
+    add_text(command, "PAIRS.json", "Pairs with the distances they should have", distance.file)->required();
+    add_json(command, distance.json);
+    command.footer("\nExample:\n  fase distance pairs.json\n\nExit code 1: a distance is wrong.");
+    start.on(command, [&distance] { return run_distance(distance); });
 }
 
 }  // namespace fase::cli

@@ -2,7 +2,13 @@
 /// The command `fase distance`: signed distances of pairs of shapes from a file, held against published ones.
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace fase::cli {
+
+class Start;
 
 struct DistanceOptions {
     std::string file;   ///< pairs.json: see run_distance()
@@ -16,5 +22,8 @@ struct DistanceOptions {
 /// far as it has them; with none of them, or with a shape that Fase lacks, it is skipped and the reason printed.
 /// Returns the exit code: 0; 1 a case is wrong; 2 the file is not as above; 3 it cannot be read.
 int run_distance(const DistanceOptions& options);
+
+/// Adds the command to the program.
+void add_distance(CLI::App& app, Start& start);
 
 }  // namespace fase::cli

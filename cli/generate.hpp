@@ -4,7 +4,13 @@
 #include <cstdint>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace fase::cli {
+
+class Start;
 
 struct GenerateOptions {
     std::string kind;       ///< a name of scene::generators()
@@ -17,7 +23,7 @@ struct GenerateOptions {
 /// that cannot be; 3 the file cannot be written; 4 too little memory.
 int run_generate(const GenerateOptions& options);
 
-/// A line a kind: its name, what it is, how many bodies it has when not told: for the command's help.
-[[nodiscard]] std::string generate_kinds();
+/// Adds the command to the program.
+void add_generate(CLI::App& app, Start& start);
 
 }  // namespace fase::cli

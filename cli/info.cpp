@@ -10,6 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "cli/arguments.hpp"
+#include "cli/output.hpp"
+#include "cli/start.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/player.hpp"
 #include "fase/scene/files.hpp"
@@ -208,13 +211,19 @@ Result<Facts> facts_of(const InfoOptions& options) {
 
 int run_info(const InfoOptions& options) {
     const Result<Facts> facts = facts_of(options);
-    if (!facts) {
-        fmt::print(stderr, "fase: error: {}\n", unquoted(scene::quoted(facts.error().text())));
-        return facts.status() == Status::Io ? 3 : facts.status() == Status::NoMemory ? 4 : 2;
-    }
+    if (!facts) return refuse(facts.error());
     const std::string text = options.json ? facts->json() : facts->lines();
     std::fwrite(text.data(), 1, text.size(), stdout);
-    return 0;
+    return exit_ok;
+}
+
+void add_info(CLI::App& app, Start& start) {
+    auto& info = start.options<InfoOptions>();
+    CLI::App& command = *app.add_subcommand("info", "Say what a file is and what is in it");
+    add_text(command, "FILE", "A scene or a recording", info.file)->required();
+    add_json(command, info.json);
+    command.footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json");
+    start.on(command, [&info] { return run_info(info); });
 }
 
 }  // namespace fase::cli

@@ -10,11 +10,13 @@
 #include <thread>
 #include <utility>
 
+#include "cli/arguments.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_summary.hpp"
 #include "cli/scene_look.hpp"
+#include "cli/start.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/recorder.hpp"
 #include "fase/scene/generate.hpp"
@@ -24,7 +26,7 @@
 namespace fase::cli {
 namespace {
 
-constexpr double default_seconds = 10;
+constexpr double default_seconds = 10, most_seconds = 1e9;
 
 bool exists(const std::string& path) {
     struct stat there {};
@@ -170,6 +172,36 @@ int run_scene(const RunOptions& options) {
     const std::string text = options.json ? to_json(summary) : to_table(summary);
     std::fwrite(text.data(), 1, text.size(), stdout);
     return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
+}
+
+void add_run(CLI::App& app, Start& start) {
+    auto& run = start.options<RunOptions>();
+    CLI::App& command = *app.add_subcommand("run", "Simulate a scene; tell how it went; record it");
+    add_text(command, "SCENE", "A .gltf or .glb file, or a kind of 'fase generate'", run.scene)->required();
+    CLI::Option* seconds = add_positive_number(command, "--seconds", "Simulated time (default 10)", most_seconds,
+                                               [&run](double value) { run.seconds = value; });
+    add_whole_number(command, "--steps", "Steps, instead of seconds", 0, most_steps, run.steps)->excludes(seconds);
+    add_structure(command, "Broad phase: auto (default), ", run.structure);
+    add_threads(command, "0 (default): all cores; the result is the same for any", 0, run.threads);
+    add_positive_number(command, "--dt", "Seconds a step (default: the scene's, else 1/60)", 1,
+                        [&run](double value) { run.time_step = value; });
+    add_whole_number(command, "--sub-steps", "Solver's steps in a step (default: the scene's, else 4)", 1, 64,
+                     run.sub_steps);
+    command.add_flag("--no-sleep", run.keep_awake, "Nothing falls asleep");
+    add_count(command, "Of a kind: bodies, roughly", run.count);
+    add_seed(command, "Of a kind: another one of it", run.seed);
+    CLI::Option* record = add_text(command, "--record", "Write a recording for 'fase view'", run.record);
+    command.add_flag("--contacts", run.record_contacts, "Record all contact points too")->needs(record);
+    command.add_flag("--durable", run.durable, "Force each block of the recording to the disk (power loss)")
+        ->needs(record);
+    add_json(command, run.json);
+    command.footer(
+        "\nExamples:\n"
+        "  fase run castle --seconds 12 --record castle.faserec\n"
+        "  fase run scene.glb --steps 600 --threads 4 --json\n"
+        "  fase run pile --count 500 --structure brute_force\n"
+        "\nCtrl-C ends the run after the step in hand; what is recorded so far is kept.");
+    start.on(command, [&run] { return run_scene(run); });
 }
 
 }  // namespace fase::cli

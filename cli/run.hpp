@@ -5,7 +5,13 @@
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace fase::cli {
+
+class Start;
 
 /// The most steps of one run: their times are all kept for the medians.
 inline constexpr std::uint64_t most_steps = 10'000'000;
@@ -31,5 +37,8 @@ struct RunOptions {
 /// the recording whole and the table of what was done. Returns the exit code: 0; 2 the scene or an option cannot be
 /// meant; 3 a file cannot be read or written; 4 too little memory; 130 or 143 when a signal ended it.
 int run_scene(const RunOptions& options);
+
+/// Adds the command to the program.
+void add_run(CLI::App& app, Start& start);
 
 }  // namespace fase::cli

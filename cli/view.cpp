@@ -11,7 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "cli/arguments.hpp"
 #include "cli/output.hpp"
+#include "cli/start.hpp"
 #include "cli/view_page.hpp"
 #include "cli/view_server.hpp"
 #include "fase/record/glb_export.hpp"
@@ -23,6 +25,15 @@ namespace fase::cli {
 namespace {
 
 void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", printable(text)); }
+
+/// Whether all that is to be written can be, beside the file that is read.
+Result<void> check_outputs(const ViewOptions& options, const std::string& input) {
+    for (const std::string* out : {&options.html, &options.glb}) {
+        if (out->empty()) continue;
+        if (Result<void> checked = check_output(*out, input); !checked) return checked;
+    }
+    return {};
+}
 
 /// The bytes of a recording as far as they are good.
 Result<std::vector<std::byte>> good_bytes(const record::Player& player) {
@@ -76,6 +87,7 @@ int serve(const record::Player& player, const ViewOptions& options) {
 }  // namespace
 
 int run_view(const ViewOptions& options) {
+    if (Result<void> checked = check_outputs(options, options.file); !checked) return refuse(checked.error());
     Result<record::Player> player = record::Player::open(options.file);
     if (!player) return refuse(player.error());
     if (!(*player).lost().empty()) warn((*player).path() + ": " + (*player).lost());
@@ -83,10 +95,7 @@ int run_view(const ViewOptions& options) {
     if ((*player).path() == options.file && std::filesystem::exists(options.file + ".part", ignored)) {
         warn(options.file + ".part: stands beside it, of a recording that is running or was never finished");
     }
-    for (const std::string* out : {&options.html, &options.glb}) {
-        if (out->empty()) continue;
-        if (Result<void> checked = check_output(*out, (*player).path()); !checked) return refuse(checked.error());
-    }
+    if (Result<void> checked = check_outputs(options, (*player).path()); !checked) return refuse(checked.error());
     if (!options.html.empty()) {
         if (Result<void> written = write_page(*player, options.html); !written) return refuse(written.error());
         fmt::print("{}\n", printable(options.html));
@@ -95,8 +104,23 @@ int run_view(const ViewOptions& options) {
         if (Result<void> written = write_glb(*player, options.glb); !written) return refuse(written.error());
         fmt::print("{}\n", printable(options.glb));
     }
-    if (!options.html.empty() || !options.glb.empty()) return 0;
+    if (!options.html.empty() || !options.glb.empty()) return exit_ok;
     return serve(*player, options);
+}
+
+void add_view(CLI::App& app, Start& start) {
+    auto& view = start.options<ViewOptions>();
+    CLI::App& command = *app.add_subcommand("view", "Show a recording in the browser");
+    add_text(command, "FILE", "A recording of 'fase run --record'", view.file)->required();
+    add_text(command, "--html", "Write one self-contained page instead of serving", view.html);
+    add_text(command, "--glb", "Write the motion as a glTF animation instead of serving", view.glb);
+    add_whole_number(command, "--port", "Serve on 127.0.0.1:N (default: any free one)", 0, 65535, view.port);
+    command.footer(
+        "\nExamples:\n"
+        "  fase view castle.faserec\n"
+        "  fase view castle.faserec --html castle.html\n"
+        "  fase view castle.faserec --glb castle_animation.glb");
+    start.on(command, [&view] { return run_view(view); });
 }
 
 }  // namespace fase::cli

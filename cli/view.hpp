@@ -2,7 +2,13 @@
 /// The command `fase view`: a recording in the browser, as one page, or as an animation.
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace fase::cli {
+
+class Start;
 
 struct ViewOptions {
     std::string file;  ///< a recording; where there is none, FILE.part of one that was never finished
@@ -16,5 +22,8 @@ struct ViewOptions {
 /// ended it. Call before other threads are started: the two signals are blocked in the calling thread and in those that
 /// it makes.
 int run_view(const ViewOptions& options);
+
+/// Adds the command to the program.
+void add_view(CLI::App& app, Start& start);
 
 }  // namespace fase::cli
