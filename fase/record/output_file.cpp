@@ -18,6 +18,8 @@
 #include <system_error>
 #include <utility>
 
+#include "fase/core/check.hpp"
+
 namespace fase::record {
 namespace {
 
@@ -187,6 +189,24 @@ Result<void> OutputFile::append(std::span<const std::byte> bytes) {
         }
     }
     bytes_ += written;
+    return {};
+}
+
+Result<void> OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (handle_ < 0) return Error{Status::Io, path_, "cannot write: it is closed", {}};
+    if (direct_) return Error{Status::Io, path_, "cannot write twice to a device or a pipe", {}};
+    FASE_ASSERT(offset + bytes.size() <= bytes_);
+    const WriteSignals signals;
+    std::size_t written = 0;
+    while (written < bytes.size()) {
+        const ssize_t answer =
+            ::pwrite(handle_, bytes.data() + written, bytes.size() - written, static_cast<off_t>(offset + written));
+        if (answer > 0) {
+            written += static_cast<std::size_t>(answer);
+        } else if (answer == 0 || errno != EINTR) {
+            return system_error(path_, "cannot write", answer == 0 ? ENOSPC : errno);
+        }
+    }
     return {};
 }
 

@@ -24,6 +24,8 @@ public:
 
     /// All of `bytes`, or Io ("disk full") and none of them. Never raises SIGXFSZ or SIGPIPE.
     Result<void> append(std::span<const std::byte> bytes);
+    /// Puts other bytes in the place of some that were appended; Io on a device or a pipe.
+    Result<void> overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
     /// Forces what was appended to the disk.
     Result<void> sync();
     /// Gives the file its name, in place of any file that had it.
@@ -31,6 +33,8 @@ public:
     Result<void> complete(bool durable);
     /// Bytes appended.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    /// A device or a pipe: written directly, never again.
+    [[nodiscard]] bool is_stream() const { return direct_; }
     /// Where the bytes are now: `NAME.part`, or `NAME` once complete (or when it is a device).
     [[nodiscard]] const std::string& path() const { return path_; }
 

@@ -1,0 +1,227 @@
+/// Reading, judging and writing traces of boxes.
+#include "fase/record/trace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace fase::record {
+namespace {
+
+constexpr std::uint64_t head_size = 16, box_size = 24;
+constexpr std::size_t block_boxes = 16384;  // read at once
+constexpr std::uint8_t known_flags = trace_static | trace_asleep;
+constexpr std::array<std::string_view, 6> number_names{"least x",   "least y",   "least z",
+                                                       "largest x", "largest y", "largest z"};
+
+constexpr std::uint64_t padded(std::uint64_t boxes) { return (boxes + 3) / 4 * 4; }
+
+/// What is wrong with a box, and with which of its numbers.
+struct Fault {
+    std::size_t number = 0;
+    std::string problem;  ///< "" when all is well
+};
+
+Fault fault_of(const Aabb& box) {
+    const std::array<float, 6> numbers{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
+    for (std::size_t i = 0; i < 6; ++i)
+        if (std::isnan(numbers[i])) return {i, fmt::format("found NaN as {}, need a number", number_names[i])};
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (numbers[i] > numbers[i + 3])
+            return {i, fmt::format("found {} {} above {} {}, need at most that", number_names[i], numbers[i],
+                                   number_names[i + 3], numbers[i + 3])};
+        if (numbers[i] == Aabb::infinity || numbers[i + 3] == -Aabb::infinity)
+            return {i, fmt::format("found {} {} and {} {}, need a box that is not at infinity", number_names[i],
+                                   numbers[i], number_names[i + 3], numbers[i + 3])};
+    }
+    return {};
+}
+
+}  // namespace
+
+Error TraceReader::broken(std::uint64_t offset, std::string problem, std::string remedy) const {
+    return {Status::Format, fmt::format("{}:{}", path(), offset), std::move(problem), std::move(remedy)};
+}
+
+Error TraceReader::broken_body(std::uint32_t body, std::size_t number, const std::string& problem) const {
+    return broken(offset_of(frame_, body) + number * 4, fmt::format("frame {}, body {}: {}", frame_, body, problem));
+}
+
+std::uint64_t TraceReader::offset_of(std::uint32_t frame, std::uint32_t body) const {
+    return head_bytes_ + (std::uint64_t(frame) * boxes() + body) * box_size;
+}
+
+Result<TraceReader> TraceReader::open(const std::string& name) {
+    Result<InputFile> file = InputFile::open(name);
+    if (!file) return file.error();
+    TraceReader reader(*std::move(file));
+    if (Result<void> read = reader.read_head(); !read) return read.error();
+    return reader;
+}
+
+Result<void> TraceReader::read_head() {
+    const std::uint64_t size = file_.size();
+    std::array<std::byte, head_size> head{};
+    const auto begin = std::span(head).first(static_cast<std::size_t>(std::min(size, head_size)));
+    if (Result<void> read = file_.read(0, begin); !read) return read;
+    const auto letters = std::as_bytes(std::span(trace_magic));
+    const std::size_t known = std::min(begin.size(), letters.size());
+    if (!std::equal(begin.begin(), begin.begin() + static_cast<std::ptrdiff_t>(known), letters.begin()))
+        return broken(0, "found another kind of file, need a trace, which begins with AABT");
+    if (size < head_size) return broken(size, fmt::format("found {} bytes, need a head of {}", size, head_size));
+
+    ByteReader numbers(std::span<const std::byte>(head).subspan(4));
+    const auto version = numbers.get<std::uint32_t>(), boxes = numbers.get<std::uint32_t>();
+    frames_ = numbers.get<std::uint32_t>();
+    if (version != trace_version)
+        return broken(4, fmt::format("found version {}, this program reads {}", version, trace_version));
+    if (boxes == 0) return broken(8, "found 0 boxes, need at least 1");
+    if (frames_ == 0) return broken(12, "found 0 frames, need at least 1", "its writer may not have come to the end");
+
+    // Boxes stay below 2^32, so a frame below 2^37; frames are counted by division: nothing can overflow.
+    head_bytes_ = head_size + padded(boxes);
+    const std::uint64_t frame_bytes = boxes * box_size;
+    if (size < head_bytes_)
+        return broken(head_size, fmt::format("found {} bytes, need flags of {} boxes", size - head_size, boxes));
+    const std::uint64_t whole = (size - head_bytes_) / frame_bytes, rest = (size - head_bytes_) % frame_bytes;
+    if (whole < frames_) {
+        return broken(size, fmt::format("frame {}, body {}: found the end of the file after {} frames and {} bytes, "
+                                        "need {} frames of {} bytes",
+                                        whole, rest / box_size, whole, rest, frames_, frame_bytes));
+    }
+    if (whole > frames_ || rest != 0) {
+        const std::uint64_t end = head_bytes_ + frames_ * frame_bytes;
+        return broken(end, fmt::format("found {} bytes behind the last of {} frames, need none", size - end, frames_));
+    }
+
+    std::vector<std::byte> flags(static_cast<std::size_t>(head_bytes_ - head_size));
+    if (Result<void> read = file_.read(head_size, flags); !read) return read;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+        const auto flag = std::to_integer<unsigned>(flags[i]);
+        if (i < boxes && (flag & ~unsigned(known_flags)) != 0)
+            return broken(head_size + i, fmt::format("body {}: found flags {}, need 0 to {}", i, flag, known_flags));
+        if (i >= boxes && flag != 0)
+            return broken(head_size + i, fmt::format("found {} behind the flags, need 0", flag));
+    }
+    flags_.resize(boxes);
+    for (std::size_t i = 0; i < boxes; ++i) flags_[i] = std::to_integer<std::uint8_t>(flags[i]);
+    return {};
+}
+
+Result<bool> TraceReader::next(std::vector<Aabb>& out) {
+    out.clear();
+    if (frame_ == frames_) return false;
+    out.reserve(boxes());
+    block_.resize(std::min(boxes(), block_boxes) * box_size);
+    std::size_t statics = 0;  // so far in this frame
+    for (std::size_t first = 0; first < boxes(); first += block_boxes) {
+        const std::size_t count = std::min(block_boxes, boxes() - first);
+        const std::span<std::byte> bytes = std::span(block_).first(count * box_size);
+        if (Result<void> read = file_.read(offset_of(frame_, static_cast<std::uint32_t>(first)), bytes); !read) {
+            out.clear();
+            return read.error();
+        }
+        ByteReader numbers(bytes);
+        for (std::size_t i = first; i < first + count; ++i) {
+            Aabb box;
+            for (Vec3* corner : {&box.lo, &box.hi})
+                *corner = {numbers.get<float>(), numbers.get<float>(), numbers.get<float>()};
+            const auto body = static_cast<std::uint32_t>(i);
+            const bool stands = (flags_[i] & trace_static) != 0;
+            if (const Fault fault = fault_of(box); !fault.problem.empty()) {
+                out.clear();
+                return broken_body(body, fault.number, fault.problem);
+            }
+            if (stands && frame_ == 0) {
+                if (first_static_.size() == statics) first_static_.push_back(box);
+            } else if (stands && !(statics < first_static_.size() && first_static_[statics] == box)) {
+                out.clear();
+                return broken_body(body, 0, "found a static body whose box moved, need the box of the first frame");
+            }
+            statics += stands ? 1 : 0;
+            out.push_back(box);
+        }
+    }
+    ++frame_;
+    return true;
+}
+
+Result<TraceWriter> TraceWriter::create(const std::string& name, std::size_t boxes) {
+    if (boxes == 0 || boxes >= std::numeric_limits<std::uint32_t>::max())
+        return Error{Status::BadArgument, name, fmt::format("found {} boxes, need 1 to 2^32 - 2", boxes), {}};
+    Result<OutputFile> file = OutputFile::create(name);
+    if (!file) return file.error();
+    if (file->is_stream())
+        return Error{Status::Io, name, "found a device or a pipe, need a file: its head is written last", {}};
+    TraceWriter writer(*std::move(file), boxes);
+    ByteWriter head;
+    head.put_letters(trace_magic);
+    head.put(trace_version);
+    head.put(static_cast<std::uint32_t>(boxes));
+    head.put(std::uint32_t{0});
+    std::vector<std::byte> bytes(head.bytes().begin(), head.bytes().end());
+    bytes.resize(static_cast<std::size_t>(head_size + padded(boxes)));
+    if (Result<void> written = writer.file_.append(bytes); !written) return written.error();
+    return writer;
+}
+
+Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
+    if (boxes.size() != boxes_)
+        return Error{Status::BadArgument,
+                     fmt::format("frame {}", frames_),
+                     fmt::format("found {} boxes, need {} as in each frame", boxes.size(), boxes_),
+                     {}};
+    if (frames_ == std::numeric_limits<std::uint32_t>::max())
+        return Error{Status::Capacity, path(), "found no room for another frame, need at most 2^32 - 1", {}};
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (const Fault fault = fault_of(boxes[i]); !fault.problem.empty())
+            return Error{Status::BadArgument, fmt::format("frame {}, body {}", frames_, i), fault.problem, {}};
+    }
+    frame_bytes_.clear();
+    for (const Aabb& box : boxes) {
+        frame_bytes_.put_vec3(box.lo);
+        frame_bytes_.put_vec3(box.hi);
+    }
+    if (const Result<void> written = file_.append(frame_bytes_.bytes()); !written) {
+        Error error = written.error();
+        error.problem += fmt::format("; wrote {} frames, {} bytes", frames_, file_.bytes());
+        return error;
+    }
+    if (frames_ == 0) {
+        first_.assign(boxes.begin(), boxes.end());
+        moved_.assign(boxes_, 0);
+    } else {
+        for (std::size_t i = 0; i < boxes_; ++i)
+            if (!(boxes[i] == first_[i])) moved_[i] = 1;
+    }
+    ++frames_;
+    return {};
+}
+
+Result<void> TraceWriter::finish(std::span<const std::uint8_t> flags, bool durable) {
+    if (frames_ == 0) return Error{Status::BadArgument, path(), "found no frame, need at least 1", {}};
+    if (flags.size() != boxes_)
+        return Error{Status::BadArgument, path(), fmt::format("found {} flags, need {}", flags.size(), boxes_), {}};
+    for (std::size_t i = 0; i < boxes_; ++i) {
+        if ((flags[i] & ~unsigned(known_flags)) != 0)
+            return Error{Status::BadArgument,
+                         fmt::format("body {}", i),
+                         fmt::format("found flags {}, need 0 to {}", flags[i], known_flags),
+                         {}};
+        if ((flags[i] & trace_static) != 0 && moved(i))
+            return Error{Status::BadArgument,
+                         fmt::format("body {}", i),
+                         "found the static flag of one whose box moved, need it without",
+                         {}};
+    }
+    ByteWriter count;
+    count.put(frames_);
+    if (Result<void> written = file_.overwrite(head_size, std::as_bytes(flags)); !written) return written;
+    if (Result<void> written = file_.overwrite(head_size - 4, count.bytes()); !written) return written;
+    return file_.complete(durable);
+}
+
+}  // namespace fase::record
