@@ -1,0 +1,41 @@
+#pragma once
+/// What is nearest to a point.
+#include <algorithm>
+#include <vector>
+
+#include "fase/query/hit.hpp"
+
+namespace fase::query {
+
+/// The thing nearest to `point`, no farther than `radius` metres (0 or more; infinite: anywhere); nullopt: none. Of
+/// those as far, the smallest proxy. `exact` measures to the thing in a box (default: to the box; 0 inside).
+template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
+[[nodiscard]] std::optional<Hit> nearest(const S& structure, Vec3d point, float radius, E&& exact = {},
+                                         A&& accepts = {}) {
+    return least_hit(structure, broad::PointMeasure(point, radius), radius, exact, accepts);
+}
+
+/// Appends the `k` nearest within `radius` metres, or as many as there are, in order of (distance, proxy); the same
+/// from every structure. The end of `out` serves as heap: a buffer that is reused makes it free of allocations.
+template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
+void nearest(const S& structure, Vec3d point, std::size_t k, float radius, std::vector<Hit>& out, E&& exact = {},
+             A&& accepts = {}) {
+    if (k == 0) return;
+    const auto first = static_cast<std::ptrdiff_t>(out.size());
+    const auto begin = [&] { return out.begin() + first; };  // the farthest of the heap
+    search(structure, broad::PointMeasure(point, radius), radius, exact, accepts, [&](const Hit& hit) {
+        const std::size_t held = out.size() - static_cast<std::size_t>(first);
+        if (held < k) {
+            out.push_back(hit);
+            std::push_heap(begin(), out.end());
+        } else if (hit < *begin()) {
+            std::pop_heap(begin(), out.end());
+            out.back() = hit;
+            std::push_heap(begin(), out.end());
+        }
+        return held + 1 < k ? radius : begin()->at;
+    });
+    std::sort_heap(begin(), out.end());
+}
+
+}  // namespace fase::query

@@ -1,0 +1,83 @@
+#pragma once
+/// Regions that are no boxes: a point, a sphere, a capsule.
+#include <cmath>
+
+#include "fase/broad/region.hpp"
+
+namespace fase::query {
+
+/// The boxes that a point is in; their faces count. Exact in double.
+class PointRegion {
+public:
+    explicit PointRegion(Vec3d point) : point_(point), bounds_(rounded_outward(point, point)) {}
+    [[nodiscard]] bool touches(const Aabb& box) const {
+        return box.lo.x <= point_.x && point_.x <= box.hi.x && box.lo.y <= point_.y && point_.y <= box.hi.y &&
+               box.lo.z <= point_.z && point_.z <= box.hi.z;
+    }
+    [[nodiscard]] Aabb bounds() const { return bounds_; }
+
+private:
+    Vec3d point_;
+    Aabb bounds_;
+};
+
+/// The boxes that a ball touches. Empty boxes touch nothing.
+class SphereRegion {
+public:
+    /// `radius` in metres, 0 or more; both finite.
+    SphereRegion(Vec3d centre, float radius);
+    [[nodiscard]] bool touches(const Aabb& box) const {
+        if (!overlaps(bounds_, box) || is_empty(box)) return false;
+        const double x = gap(box.lo.x, box.hi.x, centre_.x), y = gap(box.lo.y, box.hi.y, centre_.y),
+                     z = gap(box.lo.z, box.hi.z, centre_.z);
+        return x * x + y * y + z * z <= radius_ * radius_;
+    }
+    /// Whether the farthest corner is inside.
+    [[nodiscard]] bool contains(const Aabb& box) const {
+        if (is_empty(box)) return false;
+        const double x = farther(box.lo.x, box.hi.x, centre_.x), y = farther(box.lo.y, box.hi.y, centre_.y),
+                     z = farther(box.lo.z, box.hi.z, centre_.z);
+        return x * x + y * y + z * z <= radius_ * radius_;
+    }
+    [[nodiscard]] Aabb bounds() const { return bounds_; }
+
+private:
+    Vec3d centre_;
+    double radius_;
+    Aabb bounds_;
+
+    static double gap(double lo, double hi, double p) { return p < lo ? lo - p : p > hi ? p - hi : 0.0; }
+    static double farther(double lo, double hi, double p) {
+        const double down = p - lo, up = hi - p;
+        return down > up ? down : up;
+    }
+};
+
+/// The boxes that a capsule touches: all within `radius` of the segment from `a` to `b`. touches() judges by six
+/// directions that do not depend on the box, which makes it monotone, and lets pass boxes whose corner is a little too
+/// far away; meets() is exact. overlapping() applies both. Empty boxes touch nothing.
+class CapsuleRegion {
+public:
+    /// `radius` in metres, 0 or more; all finite. a == b is a sphere.
+    CapsuleRegion(Vec3d a, Vec3d b, float radius);
+    [[nodiscard]] bool touches(const Aabb& box) const;
+    [[nodiscard]] bool meets(const Aabb& box) const;
+    [[nodiscard]] Aabb bounds() const { return bounds_; }
+
+private:
+    /// Everything of the capsule lies between `lo` and `hi` along `normal`.
+    struct Slab {
+        Vec3d normal;
+        double lo = 0, hi = 0;
+    };
+    Vec3d a_, b_;
+    double radius_;
+    Aabb bounds_;
+    Slab across_[3];  // at right angles to the segment and to one axis; normal 0 when there is none
+};
+
+/// The square of the distance between the segment from `a` to `b` and a box that is not empty, square metres; 0 when
+/// they touch.
+[[nodiscard]] double squared_distance(Vec3d a, Vec3d b, const Aabb& box);
+
+}  // namespace fase::query
