@@ -8,7 +8,6 @@
 #include "fase/broad/dynamic_bvh.hpp"
 #include "fase/broad/find_pairs.hpp"
 #include "fase/core/check.hpp"
-#include "fase/core/ids.hpp"
 #include "fase/query/cast_ray.hpp"
 #include "fase/query/cull.hpp"
 #include "fase/query/nearest.hpp"
@@ -27,8 +26,12 @@ namespace fase {
 /// References to values are good until the next insert(). Ids of another index of the same type are not told apart.
 template <class T, broad::Structure S = broad::DynamicBvh> class Index {
 public:
-    struct Tag;
-    using Id = fase::Id<Tag>;
+    /// Names one value for its whole life. Default: names nothing.
+    struct Id {
+        std::uint32_t index = 0xffffffff;  ///< its proxy in structure()
+        std::uint32_t generation = 0;
+        friend constexpr bool operator==(Id, Id) = default;
+    };
     /// A value that was met, `at` metres from the ray's origin or from the point.
     struct Hit {
         Id id;
@@ -40,15 +43,18 @@ public:
     explicit Index(S structure) : structure_(std::move(structure)) {}
 
     Id insert(const Aabb& box, T value) {
-        const Id id = ids_.add();
-        if (id.index == slots_.size()) {
-            slots_.push_back({std::move(value), box});
+        auto index = static_cast<std::uint32_t>(slots_.size());
+        if (free_.empty()) {
+            slots_.emplace_back();
         } else {
-            slots_[id.index] = {std::move(value), box};
+            index = free_.back();
+            free_.pop_back();
         }
-        structure_.insert(id.index, box);
+        slots_[index].value.emplace(std::move(value));
+        slots_[index].box = box;
+        structure_.insert(index, box);
         settled_ = false;
-        return id;
+        return id_of(index);
     }
     /// False when the id is not good; then nothing changes. So for erase() and set_awake().
     bool move(Id id, const Aabb& box) {
@@ -58,9 +64,9 @@ public:
         settled_ = false;
         return true;
     }
-    /// The value itself dies when its place is used again, or with the index.
     bool erase(Id id) {
-        if (!ids_.remove(id)) return false;
+        if (!contains(id)) return false;
+        vacate(id.index);
         structure_.erase(id.index);
         settled_ = false;
         return true;
@@ -74,8 +80,8 @@ public:
     }
     /// Erases everything; memory is kept. No id of before is good any more.
     void clear() {
-        for (std::uint32_t i = ids_.size(); i-- > 0;)
-            if (const auto id = ids_.id_at(i)) ids_.remove(*id);
+        for (auto i = static_cast<std::uint32_t>(slots_.size()); i-- > 0;)
+            if (slots_[i].value) vacate(i);
         structure_.clear();
         settled_ = false;
     }
@@ -85,11 +91,13 @@ public:
         settled_ = true;
     }
 
-    [[nodiscard]] bool contains(Id id) const { return ids_.contains(id); }
-    [[nodiscard]] std::size_t size() const { return ids_.count(); }
+    [[nodiscard]] bool contains(Id id) const {
+        return id.index < slots_.size() && slots_[id.index].value && slots_[id.index].generation == id.generation;
+    }
+    [[nodiscard]] std::size_t size() const { return slots_.size() - free_.size(); }
     /// The id must be good. So for box() and is_awake().
-    [[nodiscard]] T& value(Id id) { return slots_[checked(id)].value; }
-    [[nodiscard]] const T& value(Id id) const { return slots_[checked(id)].value; }
+    [[nodiscard]] T& value(Id id) { return *slots_[checked(id)].value; }
+    [[nodiscard]] const T& value(Id id) const { return *slots_[checked(id)].value; }
     [[nodiscard]] const Aabb& box(Id id) const { return slots_[checked(id)].box; }
     [[nodiscard]] bool is_awake(Id id) const { return structure_.is_awake(checked(id)); }
     /// For the questions of fase/query, broad::stats_of() and drawing; proxies are the ids' indices.
@@ -131,7 +139,7 @@ public:
     /// broad::beyond when the ray misses what is in the box.
     template <class E> [[nodiscard]] std::optional<Hit> cast_ray(const Ray& ray, E&& exact) const {
         return hit_of(query::nearest_hit(settled(), ray, [&](Proxy p, const Aabb& box, float entry, float limit) {
-            return exact(slots_[p].value, box, entry, limit);
+            return exact(*slots_[p].value, box, entry, limit);
         }));
     }
     /// Appends all that is on the ray, nearest first.
@@ -161,7 +169,7 @@ public:
         [[nodiscard]] const Aabb& cell() const { return leaf_.cell; }
         [[nodiscard]] int depth() const { return leaf_.depth; }
         [[nodiscard]] std::size_t size() const { return leaf_.proxies.size(); }
-        [[nodiscard]] auto& operator[](std::size_t i) const { return index_.slots_[leaf_.proxies[i]].value; }
+        [[nodiscard]] auto& operator[](std::size_t i) const { return *index_.slots_[leaf_.proxies[i]].value; }
         [[nodiscard]] Id id(std::size_t i) const { return index_.id_of(leaf_.proxies[i]); }
 
     private:
@@ -185,12 +193,13 @@ private:
     using Proxy = broad::Proxy;
     template <class U, broad::Structure S2> friend class Index;
     struct Slot {
-        T value;
+        std::optional<T> value;  // none in free slots
         Aabb box;
+        std::uint32_t generation = 1;
     };
     S structure_;
-    IdPool<Tag> ids_;
     std::vector<Slot> slots_;  // by the id's index
+    std::vector<std::uint32_t> free_;
     std::vector<broad::Pair> pairs_;
     std::vector<Proxy> found_;
     bool settled_ = true;
@@ -203,14 +212,19 @@ private:
         FASE_ASSERT(contains(id));
         return id.index;
     }
-    [[nodiscard]] Id id_of(Proxy p) const { return *ids_.id_at(p); }
+    [[nodiscard]] Id id_of(Proxy p) const { return {p, slots_[p].generation}; }
+    void vacate(std::uint32_t index) {
+        slots_[index].value.reset();
+        ++slots_[index].generation;
+        free_.push_back(index);
+    }
     [[nodiscard]] std::optional<Hit> hit_of(const std::optional<query::Hit>& hit) const {
         if (!hit) return std::nullopt;
         return Hit{id_of(hit->proxy), hit->at};
     }
 
     template <class F, class Self> static void call(F& f, Self& self, Proxy p) {
-        auto& value = self.slots_[p].value;
+        auto& value = *self.slots_[p].value;
         if constexpr (std::invocable<F&, decltype(value)>) {
             f(value);
         } else {
@@ -218,8 +232,8 @@ private:
         }
     }
     template <class F, class A, class B> static void call(F& f, A& a, Proxy p, B& b, Proxy q) {
-        auto& mine = a.slots_[p].value;
-        auto& theirs = b.slots_[q].value;
+        auto& mine = *a.slots_[p].value;
+        auto& theirs = *b.slots_[q].value;
         if constexpr (std::invocable<F&, decltype(mine), decltype(theirs)>) {
             f(mine, theirs);
         } else {
@@ -231,8 +245,8 @@ private:
         for (const broad::Pair pair : pairs) call(f, *this, pair.a, *this, pair.b);
     }
     template <class Other, class Each> void each_with(const Other& other, Each&& each) {
-        for (std::uint32_t i = 0; i < ids_.size(); ++i) {
-            if (!ids_.alive_at(i)) continue;
+        for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+            if (!slots_[i].value) continue;
             found_.clear();
             query::overlapping(other.settled(), slots_[i].box, found_);
             for (const Proxy theirs : found_) each(id_of(i), theirs);
@@ -249,8 +263,8 @@ private:
         });
     }
     template <class Self, class F> static void for_each_in(Self& self, F& f) {
-        for (std::uint32_t i = 0; i < self.ids_.size(); ++i)
-            if (self.ids_.alive_at(i)) call(f, self, i);
+        for (std::uint32_t i = 0; i < self.slots_.size(); ++i)
+            if (self.slots_[i].value) call(f, self, i);
     }
 };
 
