@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-#include "fase/scene/files.hpp"
+#include "fase/core/files.hpp"
 
 namespace fase::bench {
 namespace {
@@ -78,7 +78,7 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
     std::string text;
     struct stat there {};
     if (::stat(file.c_str(), &there) == 0) {
-        const Result<std::vector<std::byte>> bytes = scene::read_file(file, most_bytes);
+        const Result<std::vector<std::byte>> bytes = read_file(file, most_bytes);
         if (!bytes) return bytes.error();
         text.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     }
@@ -90,7 +90,7 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
     }
     if (text.back() != '\n') text += '\n';
     for (const std::vector<std::string>& row : rows) text += line_of(row);
-    return scene::write_file(file, std::as_bytes(std::span(text)));
+    return write_file(file, std::as_bytes(std::span(text)));
 }
 
 }  // namespace fase::bench

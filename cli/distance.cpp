@@ -12,8 +12,8 @@
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/start.hpp"
+#include "fase/core/files.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/scene/files.hpp"
 #include "fase/scene/json.hpp"
 
 namespace fase::cli {
@@ -170,7 +170,7 @@ Result<Verdict> judge(const JsonValue& one) {
 }
 
 Result<std::vector<Verdict>> judge_file(const std::string& file) {
-    const auto bytes = scene::read_file(file, most_bytes);
+    const auto bytes = read_file(file, most_bytes);
     if (!bytes) return bytes.error();
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     if (!document) return document.error();

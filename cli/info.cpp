@@ -13,9 +13,9 @@
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/start.hpp"
+#include "fase/core/files.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/player.hpp"
-#include "fase/scene/files.hpp"
 #include "fase/scene/gltf.hpp"
 #include "fase/scene/json.hpp"
 
@@ -164,7 +164,7 @@ Result<Facts> recording_facts(const InfoOptions& options) {
 }
 
 /// A trace's head: "AABT", version, boxes, frames, a flag byte a box (padded to 4), then 24 bytes a box and frame.
-Result<Facts> trace_facts(const InfoOptions& options, const scene::FileStart& start) {
+Result<Facts> trace_facts(const InfoOptions& options, const FileStart& start) {
     const auto refused = [&](std::string at, std::string problem) {
         return Error{Status::Format, options.file + ": byte " + at, std::move(problem), {}};
     };
@@ -196,9 +196,9 @@ Result<Facts> trace_facts(const InfoOptions& options, const scene::FileStart& st
 }
 
 Result<Facts> facts_of(const InfoOptions& options) {
-    const Result<scene::FileStart> start = scene::read_start(options.file, 16);
+    const Result<FileStart> start = read_start(options.file, 16);
     if (!start) {
-        const bool unfinished = scene::read_start(options.file + ".part", 16).has_value();
+        const bool unfinished = read_start(options.file + ".part", 16).has_value();
         return unfinished ? recording_facts(options) : Result<Facts>(start.error());
     }
     const std::string_view head(reinterpret_cast<const char*>(start->bytes.data()), start->bytes.size());

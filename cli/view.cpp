@@ -16,10 +16,10 @@
 #include "cli/start.hpp"
 #include "cli/view_page.hpp"
 #include "cli/view_server.hpp"
+#include "fase/core/files.hpp"
 #include "fase/record/glb_export.hpp"
 #include "fase/record/input_file.hpp"
 #include "fase/record/player.hpp"
-#include "fase/scene/files.hpp"
 
 namespace fase::cli {
 namespace {
@@ -49,13 +49,13 @@ Result<void> write_page(const record::Player& player, const std::string& name) {
     if (!recording) return recording.error();
     const Result<std::string> page = self_contained_page(*recording);
     if (!page) return page.error();
-    return scene::write_file(name, std::as_bytes(std::span(*page)));
+    return write_file(name, std::as_bytes(std::span(*page)));
 }
 
 Result<void> write_glb(record::Player& player, const std::string& name) {
     const Result<std::vector<std::byte>> glb = record::export_glb(player);
     if (!glb) return glb.error();
-    return scene::write_file(name, *glb);
+    return write_file(name, *glb);
 }
 
 /// Until a signal comes: its number.

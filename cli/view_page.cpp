@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "fase/scene/files.hpp"
+#include "fase/scene/uri.hpp"
 #include "viewer/embedded.hpp"
 
 namespace fase::cli {

@@ -4,7 +4,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "fase/scene/files.hpp"
+#include "fase/core/files.hpp"
 #include "fase/scene/gltf/assemble.hpp"
 
 namespace fase::scene {

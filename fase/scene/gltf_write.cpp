@@ -7,9 +7,10 @@
 #include <map>
 #include <new>
 
+#include "fase/core/files.hpp"
 #include "fase/geometry/mesh.hpp"
-#include "fase/scene/files.hpp"
 #include "fase/scene/gltf/node_writer.hpp"
+#include "fase/scene/uri.hpp"
 
 namespace fase::scene {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fase/core/files.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/scene/files.hpp"
 #include "fase/scene/json.hpp"
 
 namespace fase {
@@ -56,7 +56,7 @@ std::optional<Placed> placed(const JsonValue& object) {
 TEST(PublishedPairs, AreMetWithinTheirTolerances) {
     const std::string file = std::string(FASE_SHARED_DATA) + "/shape-pairs/pairs.json";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no " << file;
-    const auto bytes = scene::read_file(file, 1 << 26);
+    const auto bytes = read_file(file, 1 << 26);
     ASSERT_TRUE(bytes);
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     ASSERT_TRUE(document);

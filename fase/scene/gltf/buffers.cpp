@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "fase/scene/files.hpp"
+#include "fase/core/files.hpp"
 #include "fase/scene/gltf/document.hpp"
+#include "fase/scene/uri.hpp"
 
 namespace fase::scene::gltf {
 namespace {

@@ -1,5 +1,5 @@
-/// Tests of the files that scenes are read from and written to.
-#include "fase/scene/files.hpp"
+/// Tests of uris: where they may lead, and what they may hold.
+#include "fase/scene/uri.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -17,26 +17,7 @@ namespace {
 using test::TemporaryFolder;
 using test::write_text;
 
-TEST(Files, ReadsARegularFile) {
-    const TemporaryFolder folder;
-    write_text(folder / "a", "hello");
-    EXPECT_EQ(*read_file(folder / "a", 100), test::bytes_of("hello"));
-    EXPECT_EQ(read_file(folder / "a", 4).status(), Status::Format);
-    EXPECT_EQ(read_start(folder / "a", 2)->bytes, test::bytes_of("he"));
-    EXPECT_EQ(read_start(folder / "a", 2)->size, 5u);
-}
-
-TEST(Files, RefusesWhatIsNoRegularFile) {
-    const TemporaryFolder folder;
-    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-    EXPECT_EQ(read_file(folder / "pipe", 100).status(), Status::Format);
-    EXPECT_EQ(read_file(folder.path(), 100).status(), Status::Format);
-    EXPECT_EQ(read_file("/dev/zero", 100).status(), Status::Format);
-    EXPECT_EQ(read_file(folder / "nothing", 100).status(), Status::Io);
-    EXPECT_EQ(read_file("/dev/zero", 100).error().where, "/dev/zero");
-}
-
-TEST(Files, FollowsUrisInsideTheFolder) {
+TEST(Uri, FollowsUrisInsideTheFolder) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "sub");
     write_text(folder / "a b.bin", "x");
@@ -46,7 +27,7 @@ TEST(Files, FollowsUrisInsideTheFolder) {
     EXPECT_TRUE(resolve_uri(folder.path(), "./sub/c.bin"));
 }
 
-TEST(Files, RefusesUrisThatLeadOut) {
+TEST(Uri, RefusesUrisThatLeadOut) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "model");
     write_text(folder / "secret", "x");
@@ -81,7 +62,7 @@ TEST(Files, RefusesUrisThatLeadOut) {
     }
 }
 
-TEST(Files, RefusesBadBase64) {
+TEST(Uri, RefusesBadBase64) {
     EXPECT_EQ(*decode_data_uri("data:a/b;base64,aGVsbG8="), test::bytes_of("hello"));
     EXPECT_TRUE(decode_data_uri("data:;base64,")->empty());
     for (const std::string_view uri :
@@ -91,35 +72,12 @@ TEST(Files, RefusesBadBase64) {
     }
 }
 
-RC_GTEST_PROP(Files, Base64GivesBackWhatItTook, (const std::vector<std::uint8_t>& values)) {
+RC_GTEST_PROP(Uri, Base64GivesBackWhatItTook, (const std::vector<std::uint8_t>& values)) {
     std::vector<std::byte> bytes;
     for (const std::uint8_t value : values) bytes.push_back(std::byte{value});
     const auto back = decode_data_uri("data:;base64," + encode_base64(bytes));
     RC_ASSERT(back.has_value());
     RC_ASSERT(*back == bytes);
-}
-
-TEST(Files, WritesWholeFilesOnly) {
-    const TemporaryFolder folder;
-    ASSERT_TRUE(write_file(folder / "a", test::bytes_of("one")));
-    ASSERT_TRUE(write_file(folder / "a", test::bytes_of("two")));
-    EXPECT_EQ(test::content_of(folder / "a"), "two");
-    std::filesystem::create_symlink("a", folder / "link");
-    ASSERT_TRUE(write_file(folder / "link", test::bytes_of("three")));
-    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
-    EXPECT_EQ(test::content_of(folder / "a"), "three");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "a temporary file was left";
-}
-
-TEST(Files, LeaveNothingBehindWhenWritingFails) {
-    const TemporaryFolder folder;
-    EXPECT_EQ(write_file(folder.path(), test::bytes_of("x")).status(), Status::Io);
-    EXPECT_EQ(write_file(folder / "none/a", test::bytes_of("x")).status(), Status::Io);
-    EXPECT_EQ(write_file("/dev/full", test::bytes_of("x")).status(), Status::Io);
-    struct stat about = {};
-    ASSERT_EQ(stat("/dev/full", &about), 0);
-    EXPECT_TRUE(S_ISCHR(about.st_mode)) << "a device was replaced by a file";
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace
