@@ -1,7 +1,9 @@
 #pragma once
 /// The one place that names every structure. To add one: its header, and its line here.
 #include "fase/broad/brute_force.hpp"
+#include "fase/broad/bsp.hpp"
 #include "fase/broad/dynamic_bvh.hpp"
+#include "fase/broad/kd_tree.hpp"
 
 namespace fase::broad {
 
@@ -10,6 +12,8 @@ template <Structure... S> struct StructureList {};
 /// Brute force stands first: it judges the others.
 using AllStructures = StructureList<  //
     BruteForce,                       //
+    KdTree,                           //
+    Bsp,                              //
     DynamicBvh>;
 
 /// Calls f.operator()<S>() for every structure, in the order of the list.

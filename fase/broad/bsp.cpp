@@ -1,0 +1,31 @@
+/// How a tree of binary space partition chooses its planes.
+#include "fase/broad/bsp.hpp"
+
+#include <algorithm>
+
+namespace fase::broad {
+
+void Bsp::commit() {
+    commit_by([this](const Plan& plan) { return choose(plan); });
+}
+
+void Bsp::build(std::span<const Move> boxes) {
+    build_by(boxes, [this](const Plan& plan) { return choose(plan); });
+}
+
+std::optional<BoxPlane> Bsp::choose(const Plan& plan) {
+    const std::size_t count = plan.boxes.size();
+    if (count <= static_cast<std::size_t>(std::max(settings_.leaf_boxes, 1))) return std::nullopt;
+    const std::size_t candidates = std::min(static_cast<std::size_t>(std::max(settings_.candidates, 1)), 6 * count);
+    const auto face = [&](std::size_t i) -> BoxPlane {
+        const Aabb& box = plan.boxes[i * count / candidates].box;
+        const int axis = static_cast<int>(i % 3);
+        return {axis, i / 3 % 2 == 0 ? box.lo[axis] : box.hi[axis]};
+    };
+    const auto best = choose_plane(
+        candidates, face, count,
+        [&](const BoxPlane& plane, std::size_t k) { return side_of(plane, plan.boxes[k].box); }, settings_.weights);
+    return best ? std::optional(best->plane) : halving_plane(plan.boxes, scratch());
+}
+
+}  // namespace fase::broad
