@@ -28,7 +28,7 @@ struct PlaneCut {
 /// How much each fault of a plane weighs. A high `split` gives few splits and a deep tree, a low one the contrary.
 struct PlaneWeights {
     float balance = 1;  ///< for each that one side holds more than the other
-    float split = 4;    ///< for each that the plane goes through
+    float split = 2;    ///< for each that the plane goes through
 };
 
 /// The faults of a plane: 0 is perfect. Source: Fuchs, Kedem, Naylor 1980, On visible surface generation by a priori
