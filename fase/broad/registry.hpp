@@ -4,6 +4,7 @@
 #include "fase/broad/bsp.hpp"
 #include "fase/broad/dynamic_bvh.hpp"
 #include "fase/broad/kd_tree.hpp"
+#include "fase/broad/sweep_and_prune.hpp"
 
 namespace fase::broad {
 
@@ -12,6 +13,7 @@ template <Structure... S> struct StructureList {};
 /// Brute force stands first: it judges the others.
 using AllStructures = StructureList<  //
     BruteForce,                       //
+    SweepAndPrune,                    //
     KdTree,                           //
     Bsp,                              //
     DynamicBvh>;
