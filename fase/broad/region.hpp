@@ -35,7 +35,7 @@ public:
     explicit FrustumRegion(const Frustum& frustum) : frustum_(frustum), bounds_(fase::bounds(frustum)) {}
     [[nodiscard]] bool touches(const Aabb& box) const { return overlaps(bounds_, box) && overlaps(frustum_, box); }
     [[nodiscard]] bool contains(const Aabb& box) const {
-        return fase::contains(frustum_, box) && overlaps(bounds_, box);
+        return fase::contains(frustum_, box) && fase::contains(bounds_, box);
     }
     [[nodiscard]] Aabb bounds() const { return bounds_; }
     [[nodiscard]] const Frustum& frustum() const { return frustum_; }
