@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "fase/broad/any_structure.hpp"
-#include "fase/broad/pair_sink.hpp"
+#include "fase/broad/plain_sweep.hpp"
 
 namespace fase::conformance {
 namespace {
@@ -44,17 +44,9 @@ std::vector<Move> thinned(const std::vector<Move>& boxes, std::size_t most) {
     return kept;
 }
 
-/// A judge that is fit for 100,000s of boxes: sorted by their lower x, each is tested against those that begin within
-/// it.
-std::vector<Pair> pairs_by_sweep(std::vector<Move> boxes) {
-    std::sort(boxes.begin(), boxes.end(), [](const Move& a, const Move& b) { return a.box.lo.x < b.box.lo.x; });
+std::vector<Pair> pairs_by_sweep(const std::vector<Move>& boxes) {
     std::vector<Pair> pairs;
-    {
-        broad::PairSink sink(pairs);
-        for (std::size_t i = 0; i < boxes.size(); ++i)
-            for (std::size_t k = i + 1; k < boxes.size() && boxes[k].box.lo.x <= boxes[i].box.hi.x; ++k)
-                if (overlaps(boxes[i].box, boxes[k].box)) sink.add(boxes[i].proxy, boxes[k].proxy);
-    }
+    broad::find_pairs_by_sweep(boxes, pairs);
     std::sort(pairs.begin(), pairs.end());
     return pairs;
 }

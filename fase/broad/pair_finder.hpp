@@ -1,0 +1,57 @@
+#pragma once
+/// All pairs of boxes frame after frame: what stands, what sleeps and what moves, each in a structure of its own.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fase/broad/any_structure.hpp"
+
+namespace fase::broad {
+
+/// What is known of a box beforehand.
+enum class Population : std::uint8_t {
+    Awake,
+    Asleep,  ///< rests until its box changes; from then on it is awake
+    Static,  ///< may be moved, but two of them are never a pair
+};
+
+/// The pairs of a set of boxes that gets new places frame by frame: all that overlap, but for those of two static ones.
+/// Only what is awake looks for pairs; the pairs of two that rest are kept from build() on. Boxes are known by their
+/// place in the list. Memory is reused from frame to frame.
+class PairFinder {
+public:
+    /// @param kind an empty structure: the three populations stand in copies of it
+    explicit PairFinder(const AnyStructure& kind = {}) : awake_(kind), asleep_(kind), static_(kind) {}
+
+    /// Replaces all boxes, and finds the pairs of those that rest. `populations` is as long as `boxes`.
+    void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
+    /// Takes the boxes of the next frame, as many as build() had. Only those that changed cost more than a comparison.
+    void update(std::span<const Aabb> boxes);
+    /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
+    void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+
+    [[nodiscard]] Population population(Proxy p) const { return populations_[p]; }
+    /// How many boxes are awake now.
+    [[nodiscard]] std::size_t awake() const { return awake_.size(); }
+    /// Pairs of two that rest.
+    [[nodiscard]] std::span<const Pair> resting_pairs() const { return resting_; }
+    /// Memory of the three structures.
+    [[nodiscard]] std::size_t bytes() const { return awake_.bytes() + asleep_.bytes() + static_.bytes(); }
+    /// "" when all is well; else what is not.
+    [[nodiscard]] std::string broken_invariant() const;
+
+private:
+    AnyStructure awake_, asleep_, static_;
+    std::vector<Move> awake_row_, asleep_row_, static_row_;  // what stands in them
+    std::vector<Population> populations_;                    // by place
+    std::vector<Pair> resting_;
+    std::vector<Move> changed_;           // of one update
+    std::vector<Proxy> changed_proxies_;  // of the same
+
+    void wake_changed(std::span<const Aabb> boxes);
+    void move_static(std::span<const Aabb> boxes);
+    /// Drops the resting pairs for which `goes(proxy)` holds for either.
+    template <class F> void drop_resting(const F& goes);
+};
+
+}  // namespace fase::broad

@@ -1,0 +1,121 @@
+#include "fase/broad/pair_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/conformance/scenes.hpp"
+
+namespace fase::broad {
+namespace {
+
+using conformance::Scene;
+
+/// All pairs but those of two that are static, by trying all.
+std::vector<Pair> expected_pairs(const std::vector<Aabb>& boxes, const std::vector<Population>& populations) {
+    std::vector<Pair> pairs;
+    for (Proxy p = 0; p < boxes.size(); ++p)
+        for (Proxy q = p + 1; q < boxes.size(); ++q) {
+            const bool both_static = populations[p] == Population::Static && populations[q] == Population::Static;
+            if (!both_static && overlaps(boxes[p], boxes[q])) pairs.push_back({p, q});
+        }
+    return pairs;
+}
+std::vector<Pair> pairs_of(const PairFinder& finder, TaskRunner& tasks) {
+    std::vector<Pair> pairs;
+    finder.find_pairs(tasks, pairs);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+class EveryStructure : public ::testing::TestWithParam<std::string> {
+protected:
+    PairFinder finder{*AnyStructure::named(GetParam())};
+    std::unique_ptr<TaskRunner> one = make_serial_runner(), four = make_thread_runner(4);
+};
+
+std::vector<std::string> structure_names() {
+    std::vector<std::string> names;
+    for_each_structure([&]<Structure S>() { names.emplace_back(S::info.name); });
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(PairFinder, EveryStructure, ::testing::ValuesIn(structure_names()),
+                         [](const auto& name) { return name.param; });
+
+TEST_P(EveryStructure, FindsWhatTryingAllFindsInEachFrameOfEachScene) {
+    constexpr std::size_t count = 120;
+    constexpr int frames = 12;
+    for (const Scene& scene : conformance::all_scenes()) {
+        SCOPED_TRACE(scene.name);
+        Random random(3);
+        std::vector<Aabb> boxes;
+        std::vector<Population> populations;
+        for (std::size_t i = 0; i < count; ++i) {
+            boxes.push_back(scene.draw(random));
+            populations.push_back(static_cast<Population>(random.below(3)));
+        }
+        finder.build(*four, boxes, populations);
+        for (int frame = 0; frame < frames; ++frame) {
+            ASSERT_EQ(finder.broken_invariant(), "") << frame;
+            const std::vector<Pair> expected = expected_pairs(boxes, populations);
+            ASSERT_TRUE(pairs_of(finder, *one) == expected) << frame;
+            ASSERT_TRUE(pairs_of(finder, *four) == expected) << frame;
+            // Every third frame some that sleep are moved, every fifth some that are static.
+            for (Proxy p = 0; p < count; ++p) {
+                const Population population = finder.population(p);
+                const bool moves = population == Population::Awake    ? random.below(2) == 0
+                                   : population == Population::Asleep ? frame % 3 == 0 && random.below(9) == 0
+                                                                      : frame % 5 == 0 && random.below(9) == 0;
+                if (moves) boxes[p] = scene.draw(random);
+            }
+            finder.update(boxes);
+        }
+    }
+}
+
+TEST_P(EveryStructure, SharesTheWorkOfManyBoxesAmongThreads) {
+    Random random(5);
+    std::vector<Aabb> boxes;
+    std::vector<Population> populations;
+    for (std::size_t i = 0; i < 4000; ++i) {
+        boxes.push_back(conformance::box_around(conformance::point_in(random, 0, 20), {0.5f, 0.5f, 0.5f}));
+        populations.push_back(static_cast<Population>(random.below(3)));
+    }
+    finder.build(*four, boxes, populations);
+    EXPECT_TRUE(pairs_of(finder, *four) == expected_pairs(boxes, populations));
+    EXPECT_TRUE(pairs_of(finder, *one) == expected_pairs(boxes, populations));
+}
+
+TEST_P(EveryStructure, WakesASleeperWhoseBoxChanges) {
+    const auto cube = [](float x) { return Aabb{{x, 0, 0}, {x + 1, 1, 1}}; };
+    std::vector<Aabb> boxes{cube(0), cube(0.5f), cube(1), cube(9)};
+    const std::vector<Population> populations{Population::Static, Population::Asleep, Population::Asleep,
+                                              Population::Awake};
+    finder.build(*one, boxes, populations);
+    EXPECT_EQ(finder.awake(), 1u);
+    EXPECT_EQ(finder.resting_pairs().size(), 3u);
+    finder.update(boxes);
+    EXPECT_EQ(finder.awake(), 1u) << "nothing has moved";
+    boxes[2] = cube(1.5f);
+    finder.update(boxes);
+    EXPECT_EQ(finder.awake(), 2u);
+    EXPECT_EQ(finder.population(2), Population::Awake);
+    EXPECT_EQ(finder.resting_pairs().size(), 1u);
+    EXPECT_EQ(pairs_of(finder, *one), (std::vector<Pair>{{0, 1}, {1, 2}}));
+    finder.update(boxes);
+    EXPECT_EQ(finder.population(2), Population::Awake) << "it has not come to rest";
+}
+
+TEST_P(EveryStructure, IsBuiltAnewAndMayBeEmpty) {
+    finder.build(*one, {}, {});
+    finder.update({});
+    EXPECT_TRUE(pairs_of(finder, *four).empty());
+    const std::vector<Aabb> two(2, Aabb{{0, 0, 0}, {1, 1, 1}});
+    finder.build(*one, two, std::vector<Population>(2, Population::Asleep));
+    EXPECT_EQ(pairs_of(finder, *one).size(), 1u);
+    finder.build(*one, two, std::vector<Population>(2, Population::Static));
+    EXPECT_EQ(pairs_of(finder, *one).size(), 0u);
+}
+
+}  // namespace
+}  // namespace fase::broad
