@@ -1,0 +1,70 @@
+#pragma once
+/// One map of a WAD as it was drawn: vertices, lines, sides, sectors, things.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fase/level/wad.hpp"
+
+namespace fase::level {
+
+/// A corner, in map units (about 1/32 m); x to the east, y to the north.
+struct Vertex {
+    std::int16_t x = 0, y = 0;
+    friend constexpr bool operator==(Vertex, Vertex) = default;
+};
+
+/// No side, as the format writes it.
+inline constexpr std::uint16_t no_side = 0xffff;
+
+/// A wall, or a border between two sectors, from one vertex to another; its right side looks to the right of the way.
+struct Line {
+    std::uint16_t from = 0, to = 0;  ///< vertices
+    std::uint16_t flags = 0, special = 0, tag = 0;
+    std::uint16_t right = no_side, left = no_side;  ///< sides
+    /// Bit of `flags`: nothing walks through.
+    static constexpr std::uint16_t blocks = 1;
+    /// Bit of `flags`: what is drawn through it is seen, for it has two sides.
+    static constexpr std::uint16_t two_sided = 4;
+};
+
+/// What is seen on one side of a line, and the sector that it belongs to.
+struct Side {
+    std::int16_t x_offset = 0, y_offset = 0;
+    std::string upper, lower, middle;  ///< names of textures; "-": none
+    std::uint16_t sector = 0;
+};
+
+/// An area with one floor and one ceiling, heights in map units.
+struct Sector {
+    std::int16_t floor = 0, ceiling = 0;
+    std::string floor_texture, ceiling_texture;
+    std::int16_t light = 0;
+    std::uint16_t special = 0, tag = 0;
+};
+
+/// A monster, a lamp, a player's start.
+struct Thing {
+    std::int16_t x = 0, y = 0, angle = 0;
+    std::uint16_t type = 0, flags = 0;
+};
+
+/// A map whose references were all found good.
+struct Map {
+    std::string name;
+    std::vector<Vertex> vertices;
+    std::vector<Line> lines;
+    std::vector<Side> sides;
+    std::vector<Sector> sectors;
+    std::vector<Thing> things;
+};
+
+/// Reads the lumps of a map in Doom's own format. `name` is the file, for errors. Format, naming lump and entry: sizes
+/// that are no multiple of an entry's, a vertex, side or sector that does not exist, a line of zero length or without a
+/// right side. Unsupported: maps in Hexen's format or as text. BadArgument when there is no such map; tells which there
+/// are.
+/// Source of the format: Fell and others 1994, The unofficial Doom specs, chapter 4.
+Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view map);
+
+}  // namespace fase::level
