@@ -59,6 +59,7 @@ void PlaneTree::build_tree(ChoosePlane choose) {
     // A rule that has gone this deep goes nowhere: from there on, every cut must tell an eighth apart.
     const int patience = 2 * static_cast<int>(std::bit_width(entries_.size())) + 8;
     to_build_.clear();
+    scratch_.reserve(entries_.size());
     to_build_.push_back({root, 0});
     while (!to_build_.empty()) {
         const Branch at = to_build_.back();
