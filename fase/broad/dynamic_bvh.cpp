@@ -14,7 +14,10 @@ float longest_side(const Aabb& box) {
     return std::max(e.x, std::max(e.y, e.z));
 }
 
-float limited(float value, float limit) { return value < -limit ? -limit : value > limit ? limit : value; }
+/// NaN, the motion of a box that was none in between, counts as none.
+float limited(float value, float limit) {
+    return value < -limit ? -limit : value > limit ? limit : value == value ? value : 0;
+}
 
 }  // namespace
 

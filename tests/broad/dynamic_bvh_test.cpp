@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fase/core/random.hpp"
 
@@ -152,6 +153,20 @@ TEST(DynamicBvh, LetsABoxBecomeInfiniteAndFiniteAgain) {
     tree.commit();
     EXPECT_EQ(tree.broken_invariant(), "");
     EXPECT_EQ(pairs_of(tree).size(), pairs_at_first);
+}
+
+TEST(DynamicBvh, TakesABoxBackThatWasNoneBetweenTwoCommits) {
+    DynamicBvh tree;
+    for (Proxy p = 0; p < 8; ++p) tree.insert(p, cube({static_cast<float>(p), 0, 0}));
+    tree.commit();
+    const float nan = std::nanf("");
+    tree.move(3, {{nan, nan, nan}, {nan, nan, nan}});
+    tree.move(3, cube({3, 5, 0}));
+    tree.move(4, cube({3, 6, 0}));
+    tree.commit();
+    EXPECT_EQ(tree.broken_invariant(), "");
+    const std::vector<Pair> pairs = pairs_of(tree);
+    EXPECT_TRUE(std::find(pairs.begin(), pairs.end(), Pair{3, 4}) != pairs.end());
 }
 
 TEST(DynamicBvh, NeedsNoMoreMemoryOnceWarm) {
