@@ -1,0 +1,18 @@
+/// Takes a move to the frame of its target, and the touch back.
+#include "fase/narrow/cast_shape.hpp"
+
+#include "fase/narrow/advance.hpp"
+
+namespace fase::narrow {
+
+std::optional<ShapeOnShape> cast_shape(const Shape& moving, const Pose& from, Vec3 direction, float length,
+                                       const Shape& target, const Pose& at) {
+    const Mat3d of_target = to_matrix(normalized(to_double(at.rotation)));
+    const Mat3d of_mover = to_matrix(normalized(to_double(from.rotation)));
+    const TransformD start{transpose(of_target) * of_mover, transpose_times(of_target, from.position - at.position)};
+    const auto stop = advance(target, moving, start, transpose_times(of_target, to_double(direction)), double(length));
+    if (!stop) return std::nullopt;
+    return ShapeOnShape{stop->at, at.position + of_target * stop->on_target, to_float(of_target * stop->normal)};
+}
+
+}  // namespace fase::narrow
