@@ -4,6 +4,9 @@
 #include "fase/broad/bsp.hpp"
 #include "fase/broad/dynamic_bvh.hpp"
 #include "fase/broad/kd_tree.hpp"
+#include "fase/broad/loose_octree.hpp"
+#include "fase/broad/octree.hpp"
+#include "fase/broad/quadtree.hpp"
 #include "fase/broad/sweep_and_prune.hpp"
 
 namespace fase::broad {
@@ -14,6 +17,9 @@ template <Structure... S> struct StructureList {};
 using AllStructures = StructureList<  //
     BruteForce,                       //
     SweepAndPrune,                    //
+    Quadtree,                         //
+    Octree,                           //
+    LooseOctree,                      //
     KdTree,                           //
     Bsp,                              //
     DynamicBvh>;
