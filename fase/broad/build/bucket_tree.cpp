@@ -4,6 +4,17 @@
 #include "fase/broad/build/cell_pairs.hpp"
 
 namespace fase::broad {
+namespace {
+
+/// Byte k is bit k of the index.
+constexpr std::array<std::uint64_t, 256> a_byte_a_bit = [] {
+    std::array<std::uint64_t, 256> bytes{};
+    for (std::size_t mask = 0; mask < bytes.size(); ++mask)
+        for (std::size_t bit = 0; bit < 8; ++bit) bytes[mask] |= std::uint64_t{mask >> bit & 1} << (8 * bit);
+    return bytes;
+}();
+
+}  // namespace
 
 template <int Dim> void BucketTree<Dim>::rebuild() {
     const std::span<const Move> rows = this->store_.ordinary();
@@ -35,19 +46,20 @@ template <int Dim> auto BucketTree<Dim>::count_children(const Task& task) -> Cou
     for (std::size_t a = 0; a < Dim; ++a) cut[a] = (task.path.begin(a) + task.path.end(a)) / 2;
     const std::uint32_t count = task.end - task.begin;
     if (masks_.size() < count) masks_.resize(count);
-    std::array<std::uint32_t, 1u << child_count> of_mask{};
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Record& record = records_[task.begin + i];
-        std::uint32_t mask = (1u << child_count) - 1;
-        for (std::size_t a = 0; a < Dim; ++a)
-            mask &= (record.lo[a] < cut[a] ? low[a] : 0) | (record.hi[a] >= cut[a] ? high[a] : 0);
-        masks_[i] = static_cast<std::uint8_t>(mask);
-        ++of_mask[mask];
-    }
     Counts counts{};
-    for (std::uint32_t mask = 1; mask < of_mask.size(); ++mask)
-        for (std::uint32_t child = 0; child < child_count; ++child)
-            counts[child] += (mask >> child & 1) != 0 ? of_mask[mask] : 0;
+    for (std::uint32_t first = 0; first < count; first += 255) {
+        const std::uint32_t end = std::min(count, first + 255);
+        std::uint64_t sums = 0;  // a byte a child
+        for (std::uint32_t i = first; i < end; ++i) {
+            const Record& record = records_[task.begin + i];
+            std::uint32_t mask = (1u << child_count) - 1;
+            for (std::size_t a = 0; a < Dim; ++a)
+                mask &= (record.lo[a] < cut[a] ? low[a] : 0) | (record.hi[a] >= cut[a] ? high[a] : 0);
+            masks_[i] = static_cast<std::uint8_t>(mask);
+            sums += a_byte_a_bit[mask];
+        }
+        for (std::uint32_t child = 0; child < child_count; ++child) counts[child] += sums >> (8 * child) & 0xff;
+    }
     return counts;
 }
 

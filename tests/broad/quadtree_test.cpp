@@ -1,0 +1,93 @@
+#include "fase/broad/quadtree.hpp"
+
+#include "tests/broad/bucket_trees.hpp"
+
+namespace fase::broad {
+namespace {
+
+using namespace cell_trees;
+
+TEST(Quadtree, SplitsASquareThatHoldsMoreThanItsCapacity) {
+    Quadtree tree(Quadtree::Settings{.capacity = 4});
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < 4; ++p) boxes.push_back({p, cube({p % 2 == 0 ? 0.0f : 9.0f, 0, p < 2 ? 0.0f : 9.0f})});
+    tree.build(boxes);
+    EXPECT_EQ(tree.nodes(), 1u);
+    tree.insert(4, cube({0.5f, 20, 0.5f}));
+    tree.commit();
+    EXPECT_EQ(tree.nodes(), 5u);
+    EXPECT_EQ(stats_of(tree).leaves, 4u);
+    EXPECT_EQ(stats_of(tree).largest_leaf, 2u);
+    tree.erase(0);
+    tree.commit();
+    EXPECT_EQ(tree.nodes(), 1u);
+}
+
+TEST(Quadtree, HalvesOnlyTheAxesOfItsPlane) {
+    struct Case {
+        Quadtree::Plane plane;
+        int endless;
+    };
+    for (const Case& c : {Case{Quadtree::Plane::xz, 1}, Case{Quadtree::Plane::xy, 2}, Case{Quadtree::Plane::yz, 0}}) {
+        Quadtree tree(Quadtree::Settings{.capacity = 4, .plane = c.plane});
+        std::vector<Move> boxes = random_cubes(300, 12, 1);
+        tree.build(boxes);
+        tree.for_each_leaf([&](const Leaf& leaf) {
+            EXPECT_GT(leaf.depth, 0);
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_EQ(extent(leaf.cell)[axis] > 12, axis == c.endless) << "axis " << axis;
+        });
+        EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+        for (Move& m : boxes)
+            m.box = cube(Vec3{m.proxy == 0 ? 9.0f : 0.0f, m.proxy == 0 ? 9.0f : 0.0f, m.proxy == 0 ? 9.0f : 0.0f});
+        for (Move& m : boxes) m.box.hi[c.endless] = m.box.lo[c.endless] = static_cast<float>(m.proxy) * 10;
+        tree.build(boxes);
+        EXPECT_EQ(stats_of(tree).largest_leaf, 299u) << "boxes above each other share a cell";
+        EXPECT_TRUE(pairs_of(tree).empty());
+    }
+}
+
+TEST(Quadtree, PutsABoxInEveryLeafThatItOverlaps) { puts_a_box_in_every_leaf_that_it_overlaps<Quadtree>(); }
+TEST(Quadtree, MakesChildrenOnlyWhereSomethingEnters) { makes_children_only_where_something_enters<Quadtree>(); }
+TEST(Quadtree, EndsWhereBoxesCoincide) { ends_where_boxes_coincide<Quadtree>(); }
+TEST(Quadtree, KeepsFewEntriesForHugeBoxes) { keeps_few_entries_for_huge_boxes<Quadtree>(); }
+TEST(Quadtree, SplitsACrowdBelowAHugeBox) { splits_a_crowd_below_a_huge_box<Quadtree>(); }
+TEST(Quadtree, FindsBoxesOutsideTheDeclaredBounds) { finds_boxes_outside_the_declared_bounds<Quadtree>(); }
+TEST(Quadtree, HandsOverWholeBranches) { hands_over_whole_branches<Quadtree>(); }
+TEST(Quadtree, OpensNearBranchesFirst) { opens_near_branches_first<Quadtree>(); }
+TEST(Quadtree, FindsTheSameInParallel) { finds_the_same_in_parallel<Quadtree>(); }
+TEST(Quadtree, ReusesAllPools) { reuses_all_pools<Quadtree>(); }
+TEST(Quadtree, NeedsNoMoreMemoryOnceWarm) { needs_no_more_memory_once_warm<Quadtree>(); }
+RC_GTEST_PROP(Quadtree, reports_each_pair_once_for_arbitrary_boxes, ()) {
+    like_brute_force_for_arbitrary_boxes<Quadtree>();
+}
+
+TEST(Quadtree, ReportsAPairThatSharesManyLeavesOnce) {
+    std::vector<Move> boxes = random_cubes(300, 16, 2, 0.2f);
+    boxes.push_back({300, {{0, 3, 0}, {16, 4, 16}}});
+    boxes.push_back({301, {{1, 2, 1}, {15, 5, 15}}});
+    Quadtree tree(Quadtree::Settings{.capacity = 4});
+    tree.build(boxes);
+    std::size_t shared = 0;
+    tree.for_each_leaf([&](const Leaf& leaf) {
+        const auto holds = [&](Proxy p) {
+            return std::find(leaf.proxies.begin(), leaf.proxies.end(), p) != leaf.proxies.end();
+        };
+        shared += holds(300) && holds(301) ? 1 : 0;
+    });
+    EXPECT_GT(shared, 20u);
+    EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+}
+
+TEST(Quadtree, ReportsTheSameForAnySettings) {
+    const std::vector<Move> boxes = random_cubes(500, 12, 3);
+    for (const Quadtree::Settings& settings :
+         {Quadtree::Settings{.capacity = 0}, Quadtree::Settings{.max_depth = 0}, Quadtree::Settings{.max_depth = -3},
+          Quadtree::Settings{.capacity = 2, .max_depth = 99}, Quadtree::Settings{.plane = Quadtree::Plane::yz}}) {
+        Quadtree tree(settings);
+        expect_like_brute_force(tree, boxes);
+    }
+}
+
+}  // namespace
+}  // namespace fase::broad
