@@ -7,6 +7,7 @@
 
 #include "cli/arguments.hpp"
 #include "cli/distance.hpp"
+#include "cli/draw.hpp"
 #include "cli/generate.hpp"
 #include "cli/info.hpp"
 #include "cli/output.hpp"
@@ -47,6 +48,7 @@ int run_program(int count, char** arguments) {
     add_info(app, start);
     add_generate(app, start);
     add_distance(app, start);
+    add_draw(app, start);
 #ifdef HAS_FASE_BENCH
     add_bench(app, start);
 #endif
