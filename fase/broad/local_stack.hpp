@@ -30,6 +30,9 @@ public:
     /// The stack must not be empty.
     T pop() { return data_[--count_]; }
     [[nodiscard]] bool empty() const { return count_ == 0; }
+    [[nodiscard]] std::size_t size() const { return count_; }
+    /// All that was pushed and not popped, the newest last; valid until the next push.
+    [[nodiscard]] T* data() { return data_; }
 
 private:
     std::array<T, N> near_;

@@ -8,6 +8,7 @@
 #include "fase/broad/octree.hpp"
 #include "fase/broad/quadtree.hpp"
 #include "fase/broad/sweep_and_prune.hpp"
+#include "fase/broad/wide_bvh.hpp"
 
 namespace fase::broad {
 
@@ -22,7 +23,10 @@ using AllStructures = StructureList<  //
     LooseOctree,                      //
     KdTree,                           //
     Bsp,                              //
-    DynamicBvh>;
+    DynamicBvh,                       //
+    WideBvh>;
+DynamicBvh,  //
+    WideBvh > ;
 
 /// Calls f.operator()<S>() for every structure, in the order of the list.
 template <class F, class... S> void for_each_structure(F&& f, StructureList<S...>) {

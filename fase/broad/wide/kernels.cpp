@@ -1,0 +1,77 @@
+/// Compiles the searches for every SIMD target and picks one at run time.
+// Vectors of unknown size cannot be members; such targets fall back to 128 bits.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fase/broad/wide/kernels.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "fase/broad/local_stack.hpp"
+#include "fase/broad/wide/kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fase::broad::wide::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+// Nothing is fused: the order of visits is then the same on every processor.
+#include "fase/broad/wide/lanes-inl.hpp"
+//
+#include "fase/broad/wide/cull-inl.hpp"
+#include "fase/broad/wide/nearest-inl.hpp"
+#include "fase/broad/wide/overlap-inl.hpp"
+}  // namespace fase::broad::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fase::broad::wide {
+
+HWY_EXPORT(nearest_to_ray);
+HWY_EXPORT(nearest_to_point);
+HWY_EXPORT(visit_overlapping);
+HWY_EXPORT(cull_frustum);
+HWY_EXPORT(descend);
+HWY_EXPORT(open_one);
+HWY_EXPORT(refit_nodes);
+
+bool is_plain(const RayMeasure& measure) {
+    const Ray& ray = measure.ray();
+    const auto small = [](double x) { return std::abs(x) <= 1e18; };  // false for NaN
+    const Vec3 before = measure.before(), after = measure.after(), d = ray.direction;
+    return small(ray.origin.x) && small(ray.origin.y) && small(ray.origin.z) && small(before.x) && small(before.y) &&
+           small(before.z) && small(after.x) && small(after.y) && small(after.z) && small(d.x) && small(d.y) &&
+           small(d.z) && ray.length >= 0;
+}
+
+bool is_plain(const PointMeasure& measure) {
+    const auto small = [](double x) { return std::abs(x) <= 1e18; };
+    const Vec3d p = measure.point();
+    return small(p.x) && small(p.y) && small(p.z) && measure.radius() >= 0;
+}
+
+void nearest_first(const Forest& forest, const RayMeasure& measure, float limit, Near visit) {
+    HWY_DYNAMIC_DISPATCH(nearest_to_ray)(forest, measure, limit, visit);
+}
+void nearest_first(const Forest& forest, const PointMeasure& measure, float limit, Near visit) {
+    HWY_DYNAMIC_DISPATCH(nearest_to_point)(forest, measure, limit, visit);
+}
+bool traverse(const Forest& forest, const Aabb& box, Found visit) {
+    return HWY_DYNAMIC_DISPATCH(visit_overlapping)(forest, box, visit);
+}
+void cull(const Forest& forest, const FrustumRegion& region, Take take) {
+    HWY_DYNAMIC_DISPATCH(cull_frustum)(forest, region, take);
+}
+void find_pairs(const Forest& one, const Forest& two, Meeting start, bool awake_only, PairSink& sink) {
+    HWY_DYNAMIC_DISPATCH(descend)(one, two, start, awake_only, sink);
+}
+void open_meeting(const Forest& one, const Forest& two, Meeting start, PairSink& sink, std::vector<Meeting>& left) {
+    HWY_DYNAMIC_DISPATCH(open_one)(one, two, start, sink, left);
+}
+double refit(Forest& forest, std::uint32_t begin) { return HWY_DYNAMIC_DISPATCH(refit_nodes)(forest, begin); }
+
+}  // namespace fase::broad::wide
+#endif

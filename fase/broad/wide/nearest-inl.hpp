@@ -1,0 +1,177 @@
+/// Near boxes first, for rays and points. Included inside the namespace of each target.
+///
+/// Rounding. The exact tests are done in double; these here in float must accept whatever those accept. The ray's
+/// origin is taken as two floats, below and above it, whichever makes the entry earlier and the exit later; each entry
+/// and exit then carries three roundings (subtraction, product, reciprocal), 3 * 2^-24 of itself; signs are exact. All
+/// of that, and what the limit of the exact test is widened by, goes into one factor on the exits.
+
+constexpr float ray_slack = 1 + 0x1p-19f;
+constexpr float least = std::numeric_limits<float>::min();  // where floats stop to be relatively exact
+
+/// A ray against eight boxes. `Careful`: some direction is 0 or has no reciprocal in float, so that 0 times infinity
+/// may arise; such planes do not bound.
+template <bool Careful> class RayTest {
+public:
+    explicit RayTest(const RayMeasure& measure) : length_(measure.ray().length) {
+        const Ray& ray = measure.ray();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double o = ray.origin[axis], before = double(measure.before()[axis]),
+                         after = double(measure.after()[axis]);
+            // A carried box: its sums with the stored box are rounded to float, outward, in the exact test.
+            const bool thick = before != 0 || after != 0;
+            const double room = thick ? 0x1p-20 * (std::abs(o) + std::abs(before) + std::abs(after)) : 0.0;
+            const double low = o + before - room - double(least), high = o + after + room + double(least);
+            const Aabb rounded = rounded_outward({low, low, low}, {high, high, high});
+            const double d = double(ray.direction[axis]);
+            const bool forward = !(d < 0);
+            const float inverse = d == 0 ? std::numeric_limits<float>::infinity() : static_cast<float>(1.0 / d);
+            in_row_[axis] = forward ? axis : axis + 3;
+            out_row_[axis] = forward ? axis + 3 : axis;
+            in_from_[axis] = forward ? rounded.hi.x : rounded.lo.x;
+            out_from_[axis] = forward ? rounded.lo.x : rounded.hi.x;
+            in_inverse_[axis] = inverse;
+            out_inverse_[axis] = inverse * ray_slack;
+        }
+    }
+    static bool needs_care(const Ray& ray) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const float d = std::abs(ray.direction[axis]);
+            if (!(d >= 0x1p-100f && d <= 4)) return true;
+        }
+        return false;
+    }
+    void set_limit(float limit) {
+        const float farthest = limit < length_ ? limit : length_;
+        reach_ = farthest * ray_slack + 4 * least;
+    }
+    [[nodiscard]] HWY_INLINE bool within(float at) const { return at <= reach_; }
+    /// Which children are met before the limit, a bit each, and where.
+    HWY_INLINE std::uint32_t test(const Node& node, float* at) const {
+        std::uint32_t bits = 0;
+        for (int i = 0; i < width; i += lanes) {
+            V near = hn::Zero(Floats()), far = splat(reach_);
+            for (int axis = 0; axis < 3; ++axis) {
+                const V in = (load(node.plane[in_row_[axis]] + i) - splat(in_from_[axis])) * splat(in_inverse_[axis]);
+                const V out =
+                    (load(node.plane[out_row_[axis]] + i) - splat(out_from_[axis])) * splat(out_inverse_[axis]);
+                if constexpr (Careful) {
+                    near = hn::IfThenElse(hn::Gt(in, near), in, near);
+                    far = hn::IfThenElse(hn::Lt(out, far), out, far);
+                } else {
+                    near = hn::Max(near, in);
+                    far = hn::Min(far, out);
+                }
+            }
+            hn::Store(near, Floats(), at + i);
+            bits |= bits_of(hn::Le(near, far)) << i;
+        }
+        return bits;
+    }
+
+private:
+    int in_row_[3], out_row_[3];
+    float in_from_[3], out_from_[3], in_inverse_[3], out_inverse_[3];
+    float length_, reach_ = 0;
+};
+
+/// A point against eight boxes. Distances are squared; the limit's square is rounded up by more than their roundings.
+class PointTest {
+public:
+    explicit PointTest(const PointMeasure& measure) : radius_(measure.radius()) {
+        const Vec3d p = measure.point();
+        const Aabb rounded = rounded_outward(p, p);
+        for (int axis = 0; axis < 3; ++axis) {
+            low_[axis] = rounded.lo[axis];
+            high_[axis] = rounded.hi[axis];
+        }
+    }
+    void set_limit(float limit) {
+        const double farthest = double(limit < radius_ ? limit : radius_);
+        const double square = farthest * farthest * (1 + 0x1p-19) + 4 * double(least);
+        reach_ = square < 3e38 ? static_cast<float>(square) : std::numeric_limits<float>::infinity();
+    }
+    [[nodiscard]] HWY_INLINE bool within(float at) const { return at <= reach_; }
+    HWY_INLINE std::uint32_t test(const Node& node, float* at) const {
+        std::uint32_t bits = 0;
+        const V zero = hn::Zero(Floats()), reach = splat(reach_);
+        for (int i = 0; i < width; i += lanes) {
+            V sum = zero;
+            for (int axis = 0; axis < 3; ++axis) {
+                const V below = load(node.plane[axis] + i) - splat(high_[axis]);
+                const V above = splat(low_[axis]) - load(node.plane[axis + 3] + i);
+                const V gap = hn::Max(zero, hn::Max(below, above));
+                sum = sum + gap * gap;
+            }
+            hn::Store(sum, Floats(), at + i);
+            bits |= bits_of(hn::Le(sum, reach)) << i;
+        }
+        return bits;
+    }
+
+private:
+    float low_[3], high_[3];
+    float radius_, reach_ = 0;
+};
+
+struct Branch {
+    std::uint32_t link;  // a node, or leaf_bit | Place
+    float at;
+};
+
+/// Pushes the children of `bits`, the nearest on top.
+HWY_INLINE void push_sorted(LocalStack<Branch, 256>& open, const Node& node, std::uint32_t node_index,
+                            std::uint32_t bits, const float* at) {
+    open.make_room(width);
+    const std::size_t base = open.size();
+    while (bits != 0) {
+        const std::uint32_t child = take_bit(bits);
+        const std::uint32_t link = node.is_leaf(child) ? leaf_bit | place_of(node_index, child) : node.link[child];
+        const float mine = at[child];
+        open.push_if(true, {link, mine});
+        Branch* const data = open.data();
+        std::size_t k = open.size() - 1;
+        for (; k > base && data[k - 1].at < mine; --k) data[k] = data[k - 1];
+        data[k] = {link, mine};
+    }
+}
+
+template <class Test, class Measure>
+void search(const Forest& forest, Test test, const Measure& measure, float limit, Near visit) {
+    LocalStack<Branch, 256> open;
+    for (std::size_t i = forest.roots.size(); i-- > 0;) open.push({forest.roots[i], 0});
+    test.set_limit(limit);
+    const Node* const nodes = forest.nodes.data();
+    alignas(64) float at[width];
+    while (!open.empty()) {
+        const Branch branch = open.pop();
+        if (!test.within(branch.at)) continue;
+        if ((branch.link & leaf_bit) == 0) {
+            const Node& node = nodes[branch.link];
+            const std::uint32_t bits = test.test(node, at);
+            push_sorted(open, node, branch.link, bits, at);
+            continue;
+        }
+        const Place place = branch.link & ~leaf_bit;
+        const Node& node = nodes[place / width];
+        const Proxy proxy = node.link[place % width] & ~leaf_bit;
+        const Aabb box = node.box(place % width);
+        const float exact = measure.at(box, limit);
+        if (node.link[place % width] == none || !(exact < beyond)) continue;
+        const float wanted = visit(proxy, box, exact);
+        if (!(wanted < limit)) continue;
+        limit = wanted;
+        if (limit < 0) return;
+        test.set_limit(limit);
+    }
+}
+
+void nearest_to_ray(const Forest& forest, const RayMeasure& measure, float limit, Near visit) {
+    if (RayTest<true>::needs_care(measure.ray())) {
+        search(forest, RayTest<true>(measure), measure, limit, visit);
+    } else {
+        search(forest, RayTest<false>(measure), measure, limit, visit);
+    }
+}
+void nearest_to_point(const Forest& forest, const PointMeasure& measure, float limit, Near visit) {
+    search(forest, PointTest(measure), measure, limit, visit);
+}
