@@ -22,14 +22,22 @@ concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& ot
     c.find_pairs_with(other, out);
 };
 
+/// A structure that answers askers faster than one query an asker can; the contract is that of broad::find_pairs_of().
+template <class S>
+concept AnswersAskers = Structure<S> &&
+    requires(const S& c, std::span<const Move> askers, std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+    c.find_pairs_of(askers, is_asker, out);
+};
+
 /// Appends, for each asker, a pair with every stored box that its box overlaps; never with itself, should it be stored.
 /// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all; no proxy asks
 /// twice. When two askers are both stored here, their pair is found from both sides and so appears twice, unless
 /// `is_asker` (by proxy; not 0: asks, here or in another call; proxies past its end do not) marks them: then only the
-/// smaller asks. Cost: one query an asker.
+/// smaller asks. The structure's own way, or one query an asker.
 template <Structure S>
 void find_pairs_of(const S& structure, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
                    std::vector<Pair>& out) {
+    if constexpr (AnswersAskers<S>) return structure.find_pairs_of(askers, is_asker, out);
     PairSink sink(out);
     for (const Move& asker : askers) {
         const Proxy p = asker.proxy;

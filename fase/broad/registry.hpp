@@ -7,6 +7,7 @@
 #include "fase/broad/loose_octree.hpp"
 #include "fase/broad/octree.hpp"
 #include "fase/broad/quadtree.hpp"
+#include "fase/broad/row_grid.hpp"
 #include "fase/broad/sweep_and_prune.hpp"
 #include "fase/broad/wide_bvh.hpp"
 
@@ -18,6 +19,7 @@ template <Structure... S> struct StructureList {};
 using AllStructures = StructureList<  //
     BruteForce,                       //
     SweepAndPrune,                    //
+    RowGrid,                          //
     Quadtree,                         //
     Octree,                           //
     LooseOctree,                      //
@@ -27,6 +29,8 @@ using AllStructures = StructureList<  //
     WideBvh>;
 DynamicBvh,  //
     WideBvh > ;
+RowGrid,  //
+    DynamicBvh > ;
 
 /// Calls f.operator()<S>() for every structure, in the order of the list.
 template <class F, class... S> void for_each_structure(F&& f, StructureList<S...>) {

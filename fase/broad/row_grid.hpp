@@ -1,0 +1,97 @@
+#pragma once
+/// A grid of several levels whose boxes lie sorted in rows, made anew at each commit.
+#include <cstdint>
+#include <span>
+
+#include "fase/broad/box_store.hpp"
+#include "fase/broad/row_grid_walk.hpp"
+#include "fase/core/tasks.hpp"
+
+namespace fase::broad {
+
+/// Each box stands once, in the cell of its lower corner, in the finest level whose cells are at least as large as the
+/// box. Cells along one axis form a row, and the boxes of a row lie behind each other in memory, in six columns of
+/// coordinates: what a box may overlap are ranges of its own row and of its neighbours, which are tested a vector at a
+/// time. Nothing is carried over from step to step but the choice of the cells, which follows from a sample of the
+/// boxes now and then: all can move in every step. Boxes that rest stand in a second grid of their own, which is made
+/// anew only when one of them is touched. Boxes that no grid can hold (infinite, NaN, inverted, beyond 1e17 m) are kept
+/// apart and tested one by one.
+/// insert, move, erase: O(1) until commit; there O(n). All pairs: O(n + pairs) when boxes are spread. A query: the rows
+/// that its bounds reach. Memory is bounded by the number of boxes, wherever they are.
+class RowGrid {
+public:
+    static constexpr StructureInfo info{"row_grid",
+                                        "grid of several levels, boxes sorted in rows, tested a vector at a time",
+                                        "folklore; sizes in levels: Mirtich 1996, hierarchical spatial hashing"};
+
+    using Settings = RowGridSettings;
+
+    RowGrid() = default;
+    explicit RowGrid(const Settings& settings) : settings_(settings) {}
+
+    void insert(Proxy p, const Aabb& box) { moving_.boxes.insert(p, box); }
+    void move(Proxy p, const Aabb& box) { part_of(p).boxes.move(p, box); }
+    void erase(Proxy p) { part_of(p).boxes.erase(p); }
+    void set_awake(Proxy p, bool awake);
+    [[nodiscard]] bool is_awake(Proxy p) const { return moving_.boxes.holds(p); }
+    void clear();
+    void commit();
+    /// Replaces all that is stored by boxes that are awake, and commits.
+    void build(std::span<const Move> boxes);
+
+    template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
+        for (const Part* part : {&moving_, &resting_}) {
+            if (!part->boxes.traverse_odd(region, visit)) return;
+            if (!row_grid::walk(part->grid.view(), region, visit)) return;
+        }
+    }
+
+    void find_pairs(std::vector<Pair>& out) const { find(true, out); }
+    /// The pairs of which one box is awake: those that rest are not tested against each other.
+    void find_awake_pairs(std::vector<Pair>& out) const { find(false, out); }
+    /// The same pairs as find_pairs(out), in the same order for any number of threads.
+    void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+    /// As broad::find_pairs_of(): each asker against the ranges of the rows that it reaches.
+    void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+                       std::vector<Pair>& out) const;
+
+    template <class Visit> void for_each_leaf(Visit&& visit) const;
+
+    /// Cells of all levels, empty ones too; rows, where they stand in a list.
+    [[nodiscard]] std::size_t nodes() const { return 1 + moving_.grid.cells() + resting_.grid.cells(); }
+    [[nodiscard]] std::size_t size() const { return moving_.boxes.size() + resting_.boxes.size(); }
+    [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] std::string broken_invariant() const;
+    /// The cells that hold boxes; the coarsest level at depth 0.
+    void cells(std::vector<DrawnCell>& out) const;
+
+private:
+    /// Boxes and the grid that they were last sorted into.
+    struct Part {
+        BoxStore boxes;
+        RowSet grid;
+    };
+    Settings settings_;
+    Part moving_, resting_;
+
+    [[nodiscard]] Part& part_of(Proxy p) { return moving_.boxes.holds(p) ? moving_ : resting_; }
+    void find(bool resting_too, std::vector<Pair>& out) const;
+    void find_odd(bool resting_too, std::vector<Pair>& out) const;
+};
+
+template <class Visit> void RowGrid::for_each_leaf(Visit&& visit) const {
+    std::vector<Proxy> odd;
+    for (const Part* part : {&moving_, &resting_})
+        for (const Move& m : part->boxes.odd()) odd.push_back(m.proxy);
+    if (!odd.empty()) visit(Leaf{Aabb::everything(), odd, 0});
+    for (const Part* part : {&moving_, &resting_}) {
+        const RowView set = part->grid.view();
+        row_grid::for_each_cell(set,
+                                [&](const RowLevel& level, const Aabb& cell, std::uint32_t begin, std::uint32_t end) {
+                                    const auto depth = static_cast<int>(&set.levels.back() - &level);
+                                    visit(Leaf{cell, std::span(set.proxies + begin, end - begin), depth});
+                                });
+    }
+}
+
+}  // namespace fase::broad

@@ -1,0 +1,185 @@
+/// How large the cells of a row grid are, how many levels it has and which way its rows run: chosen from a sample.
+#include <algorithm>
+#include <cmath>
+
+#include "fase/broad/row_grid_set.hpp"
+
+namespace fase::broad {
+namespace {
+
+float longest_side(const Aabb& box) {
+    const Vec3 e = extent(box);
+    return std::max(e.x, std::max(e.y, e.z));
+}
+
+/// Where most lower corners lie along an axis.
+struct Range {
+    float from = 0, length = 0;
+};
+
+struct Sample {
+    std::size_t boxes = 0;     // how many it stands for
+    std::vector<float> sides;  // longest ones, in order
+    std::array<Range, 3> ranges;
+    float spread_share = 1;  // share of the places that a uniform spread would fill which are filled
+
+    [[nodiscard]] float side_at(double share) const {
+        return sides[static_cast<std::size_t>(share * static_cast<double>(sides.size() - 1))];
+    }
+};
+
+/// All but the outermost in 64 lie in it, with some room beside them: one box far away does not stretch the grid.
+Range main_range(std::vector<float>& sorted) {
+    const std::size_t out = sorted.size() < 256 ? 0 : sorted.size() / 64;
+    const float from = sorted[out], to = sorted[sorted.size() - 1 - out], room = (to - from) / 16;
+    const float least = std::max(sorted.front() - room / 4, from - room),
+                most = std::min(sorted.back() + room / 4, to + room);
+    return {least, most - least};
+}
+
+/// Lays a coarse grid with a cell a box over the sample and counts the cells that are taken.
+float share_of_places(const std::vector<std::array<float, 3>>& corners, const Sample& sample,
+                      std::array<bool, 3> wide) {
+    const int dimensions = int{wide[0]} + int{wide[1]} + int{wide[2]};
+    if (corners.size() < 256 || dimensions == 0) return 1;
+    std::size_t side = 1;
+    const auto power = [&](std::size_t s) { return dimensions == 1 ? s : dimensions == 2 ? s * s : s * s * s; };
+    while (power(side + 1) <= corners.size()) ++side;
+    std::vector<bool> taken(power(side));
+    std::size_t places = 0;
+    for (const std::array<float, 3>& corner : corners) {
+        std::size_t at = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (!wide[a]) continue;
+            const float t = (corner[a] - sample.ranges[a].from) / sample.ranges[a].length;
+            const auto k = static_cast<std::size_t>(std::clamp(t, 0.0f, 1.0f) * static_cast<float>(side));
+            at = at * side + std::min(k, side - 1);
+        }
+        places += taken[at] ? 0 : 1;
+        taken[at] = true;
+    }
+    constexpr double filled_by_chance = 0.632;  // 1 - 1/e
+    return static_cast<float>(
+        std::min(1.0, static_cast<double>(places) / (filled_by_chance * static_cast<double>(taken.size()))));
+}
+
+Sample take_sample(std::span<const Move> boxes, std::size_t most) {
+    Sample sample;
+    sample.boxes = boxes.size();
+    const std::size_t count = std::min(boxes.size(), most);
+    std::vector<std::array<float, 3>> corners;
+    std::array<std::vector<float>, 3> sorted;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Aabb& box = boxes[i * boxes.size() / count].box;
+        sample.sides.push_back(longest_side(box));
+        corners.push_back({box.lo.x, box.lo.y, box.lo.z});
+        for (std::size_t a = 0; a < 3; ++a) sorted[a].push_back(corners.back()[a]);
+    }
+    std::sort(sample.sides.begin(), sample.sides.end());
+    std::array<bool, 3> wide{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        std::sort(sorted[a].begin(), sorted[a].end());
+        sample.ranges[a] = main_range(sorted[a]);
+        wide[a] = sample.ranges[a].length > 4 * sample.side_at(0.98);
+    }
+    sample.spread_share = share_of_places(corners, sample, wide);
+    return sample;
+}
+
+/// Mean distance of `count` boxes that fill the ranges which are wider than a few `side`; 0 when none is.
+double spacing_of(const Sample& sample, double count, float side) {
+    double volume = 1;
+    int dimensions = 0;
+    for (const Range& range : sample.ranges) {
+        if (!(range.length > 4 * side)) continue;
+        volume *= double{range.length};
+        ++dimensions;
+    }
+    const double each = volume / count;
+    return dimensions == 0 ? 0 : dimensions == 1 ? each : dimensions == 2 ? std::sqrt(each) : std::cbrt(each);
+}
+
+/// Gives the level its cells: of that edge, or of a larger one when there would be more than `most`.
+void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double most) {
+    std::array<double, 3> counts{};
+    for (;; edge *= 1.25) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto a = static_cast<std::size_t>(axis[k]);
+            counts[a] = std::floor(double{sample.ranges[a].length} / edge) + 1;
+            if (k > 0 && counts[a] <= 2) counts[a] = 1;
+        }
+        if (counts[0] * counts[1] * counts[2] <= most) break;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        level.origin[a] = sample.ranges[a].from;
+        level.last[a] = static_cast<float>(counts[a] - 1);
+        level.per_cell[a] = counts[a] > 1 ? static_cast<float>(1 / edge) : 0;
+    }
+    const auto at = [&](int k) { return static_cast<std::size_t>(axis[static_cast<std::size_t>(k)]); };
+    level.stride[at(0)] = 1;
+    level.stride[at(2)] = static_cast<std::uint32_t>(counts[at(0)]);
+    level.stride[at(1)] = static_cast<std::uint32_t>(counts[at(0)] * counts[at(2)]);
+}
+
+/// Rows run along the longest axis, along the first unless another is clearly longer.
+std::array<int, 3> axes_for(const Sample& sample) {
+    int longest = 0;
+    for (int a = 1; a < 3; ++a)
+        if (sample.ranges[static_cast<std::size_t>(a)].length >
+            1.5f * sample.ranges[static_cast<std::size_t>(longest)].length)
+            longest = a;
+    return {longest, (longest + 1) % 3, (longest + 2) % 3};
+}
+
+}  // namespace
+
+RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
+    RowFit fit;
+    if (boxes.empty()) return fit;
+    const Sample sample = take_sample(boxes, std::max(settings.sample, 1u));
+    fit.axis = axes_for(sample);
+
+    // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
+    const double most_sides = sample.side_at(0.98), many_sides = sample.side_at(0.8);
+    const double spacing = spacing_of(sample, static_cast<double>(sample.boxes), sample.side_at(0.98));
+    const bool sparse = spacing > 2 * most_sides;
+    const bool by_list = settings.rows == RowGridSettings::Rows::List ||
+                         (settings.rows == RowGridSettings::Rows::Chosen && sparse && sample.spread_share < 0.3f);
+    double cell = std::max(std::min(most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
+    if (settings.cell > 0) cell = settings.cell;
+    if (!(cell > 1e-30)) cell = 1;
+
+    std::size_t below = 0;  // of the sample, in the levels so far
+    for (double limit = cell; below < sample.sides.size(); limit *= std::max(settings.level_ratio, 1.5f)) {
+        const auto end = std::upper_bound(sample.sides.begin(), sample.sides.end(), static_cast<float>(limit));
+        const auto within = static_cast<std::size_t>(end - sample.sides.begin());
+        if (within == below) continue;
+        const double count = static_cast<double>(within - below) * static_cast<double>(sample.boxes) /
+                             static_cast<double>(sample.sides.size());
+        below = within;
+        RowLevel level;
+        level.limit = static_cast<float>(limit);
+        if (by_list) {
+            level.listed = true;
+            level.edge = limit * (1 + 0x1p-10);
+            for (std::size_t a = 0; a < 3; ++a) level.origin[a] = sample.ranges[a].from;
+        } else {
+            const double most = std::min(double{settings.cells_a_box} * count + 64, 0x1p22);
+            // Room for the roundings of cell(): 2^-22 of a cell for each of some thousand rows.
+            const double edge = std::max(limit, spacing_of(sample, count, static_cast<float>(limit))) * (1 + 0x1p-9);
+            divide(level, sample, fit.axis, edge, most);
+        }
+        fit.levels.push_back(level);
+    }
+    RowLevel rest;
+    rest.limit = Aabb::infinity;
+    fit.levels.push_back(rest);
+    for (RowLevel& level : fit.levels) {
+        for (std::size_t a = 0; a < 3; ++a) level.stride[a] = std::max(level.stride[a], 1u);
+        level.table = fit.table;
+        fit.table += level.cells(0) * level.cells(1) * level.cells(2) + 1;
+    }
+    return fit;
+}
+
+}  // namespace fase::broad

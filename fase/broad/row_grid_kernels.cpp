@@ -1,0 +1,52 @@
+/// Compiles the loops of the row grid for every SIMD target and picks one at run time.
+// Vectors of unknown size cannot be members; such targets fall back to 128 bits.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fase/broad/row_grid_kernels.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "fase/broad/row_grid_kernels.hpp"
+#include "fase/math/wide-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fase::broad::row_grid::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using fase::HWY_NAMESPACE::Wide;
+#include "fase/broad/row_grid_sort-inl.hpp"
+//
+#include "fase/broad/row_grid_pairs-inl.hpp"
+}  // namespace fase::broad::row_grid::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fase::broad::row_grid {
+
+HWY_EXPORT(count_cells_wide);
+HWY_EXPORT(gather_boxes_wide);
+HWY_EXPORT(find_own_pairs_wide);
+HWY_EXPORT(find_asked_pairs_wide);
+
+std::size_t count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+    return HWY_DYNAMIC_DISPATCH(count_cells_wide)(boxes, fit, keys, table);
+}
+std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,
+                                  const std::array<float*, 6>& columns, Proxy* order) {
+    return HWY_DYNAMIC_DISPATCH(gather_boxes_wide)(boxes, begin, end, columns, order);
+}
+void find_own_pairs(const RowView& set, std::size_t begin, std::size_t end, PairBlock& out) {
+    HWY_DYNAMIC_DISPATCH(find_own_pairs_wide)(set, begin, end, out);
+}
+void find_asked_pairs(const RowView& set, const Askers& askers, PairBlock& out) {
+    HWY_DYNAMIC_DISPATCH(find_asked_pairs_wide)(set, askers, out);
+}
+
+}  // namespace fase::broad::row_grid
+#endif

@@ -1,0 +1,211 @@
+/// How boxes are sorted into the rows: counted by cells, or, where most rows are empty, by row and coordinate.
+#include "fase/broad/row_grid_set.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "fase/broad/row_grid_kernels.hpp"
+
+namespace fase::broad {
+namespace {
+
+/// Bits in the order of the floats, for all but NaN.
+std::uint32_t ordered_bits(float v) {
+    const auto bits = std::bit_cast<std::uint32_t>(v + 0.0f);  // one zero, not two
+    return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+/// Sorts by bits 11k..11k+10 of a key, keeping the order of equals.
+template <class Item, class Key> void sort_by_digit(std::vector<Item>& items, std::vector<Item>& scratch, Key&& key) {
+    std::array<std::uint32_t, 2048> counts{};
+    for (const Item& item : items) ++counts[key(item)];
+    if (std::find(counts.begin(), counts.end(), items.size()) != counts.end()) return;
+    std::uint32_t sum = 0;
+    for (std::uint32_t& count : counts) sum += std::exchange(count, sum);
+    scratch.resize(items.size());
+    for (const Item& item : items) scratch[counts[key(item)]++] = item;
+    items.swap(scratch);
+}
+
+}  // namespace
+
+void RowSet::fit(std::span<const Move> boxes, const RowGridSettings& settings) {
+    fit_ = fit_rows(boxes, settings);
+    fitted_count_ = boxes.size();
+    age_ = 0;
+    stale_ = false;
+}
+
+/// For the records and for what is read beyond them; grows only.
+void RowSet::make_room() {
+    const std::size_t wanted = count_ + row_slack;
+    if (proxies_.size() < wanted) {
+        const std::size_t room = count_ + count_ / 16 + row_slack;
+        proxies_.resize(room);
+        for (std::vector<float>& column : columns_) column.resize(room);
+    }
+}
+
+void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
+    count_ = boxes.size();
+    rows_.clear();
+    make_room();
+    const bool other_count = count_ > fitted_count_ + fitted_count_ / 4 || count_ < fitted_count_ - fitted_count_ / 4;
+    if (stale_ || other_count || ++age_ >= settings.fit_lasts) fit(boxes, settings);
+    if (count_ == 0) return;
+
+    float* const keys = columns_[0].data();  // until the boxes come there
+    for (;;) {
+        table_.assign(fit_.table, 0);
+        const std::size_t outside = row_grid::count_cells(boxes, fit_, keys, table_.data());
+        if (outside <= count_ / 16 || age_ == 0) break;
+        fit(boxes, settings);
+    }
+
+    // A cell's counter stands one place behind the cell; once all boxes are placed, it has become where the next
+    // begins.
+    std::uint32_t sum = 0;
+    for (std::uint32_t& counter : table_) sum += std::exchange(counter, sum);
+    for (std::size_t i = 0; i < count_; ++i)
+        proxies_[table_[std::bit_cast<std::uint32_t>(keys[i])]++] = static_cast<std::uint32_t>(i);
+
+    std::array<float*, 6> columns;
+    for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_[k].data();
+    for (std::size_t k = 0; k < fit_.levels.size(); ++k) {
+        RowLevel& level = fit_.levels[k];
+        const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
+        level.first = table_[level.table];
+        level.count = table_[level.table + cells] - level.first;
+        if (level.listed) sort_listed(boxes, level);
+        level.reach = row_grid::gather_boxes(boxes, level.first, level.first + level.count, columns, proxies_.data());
+    }
+    if (fit_.levels.back().count > count_ / 16) stale_ = age_ != 0;
+}
+
+/// Orders the level's boxes, of which there are only the numbers yet, by row and lower corner along it.
+void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
+    const auto [ax, ay, az] = fit_.axis;
+    level.first_row = static_cast<std::uint32_t>(rows_.size());
+    items_.clear();
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    const auto biased = [](std::int32_t v) { return static_cast<std::uint32_t>(v) + 0x80000000u; };
+    for (std::uint32_t i = level.first; i < level.first + level.count; ++i) {
+        Vec3 lo = boxes[proxies_[i]].box.lo;
+        const std::uint64_t row =
+            std::uint64_t{biased(level.listed_cell(ay, lo[ay]))} << 32 | biased(level.listed_cell(az, lo[az]));
+        any |= row;
+        all &= row;
+        items_.push_back({row, ordered_bits(lo[ax]), proxies_[i]});
+    }
+    for (const unsigned shift : {0u, 11u, 22u})
+        sort_by_digit(items_, items_scratch_, [&](const RowItem& item) { return item.x >> shift & 2047; });
+    const std::uint64_t differs = any ^ all;
+    for (unsigned shift = 0; shift < 64; shift += 11)
+        if ((differs >> shift & 2047) != 0)
+            sort_by_digit(items_, items_scratch_, [&](const RowItem& item) { return item.row >> shift & 2047; });
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        const auto at = level.first + static_cast<std::uint32_t>(k);
+        proxies_[at] = items_[k].order;
+        if (k > 0 && items_[k].row == items_[k - 1].row) continue;
+        const auto unbiased = [](std::uint64_t v) {
+            return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) - 0x80000000u);
+        };
+        rows_.push_back({unbiased(items_[k].row >> 32), unbiased(items_[k].row & 0xffffffff), at});
+    }
+    level.row_count = static_cast<std::uint32_t>(rows_.size()) - level.first_row;
+    rows_.push_back({INT32_MAX, INT32_MAX, level.first + level.count});
+}
+
+RowView RowSet::view() const {
+    RowView view;
+    for (std::size_t a = 0; a < 3; ++a) {
+        view.lo[a] = columns_[a].data();
+        view.hi[a] = columns_[a + 3].data();
+    }
+    view.proxies = proxies_.data();
+    view.count = count_;
+    view.table = table_.data();
+    view.levels = count_ == 0 ? std::span<const RowLevel>() : std::span<const RowLevel>(fit_.levels);
+    view.rows = rows_;
+    view.axis = fit_.axis;
+    return view;
+}
+
+std::size_t RowSet::bytes() const {
+    std::size_t columns = 0;
+    for (const std::vector<float>& column : columns_) columns += column.capacity() * sizeof(float);
+    return columns + proxies_.capacity() * sizeof(Proxy) + table_.capacity() * sizeof(std::uint32_t) +
+           rows_.capacity() * sizeof(ListedRow) + fit_.levels.capacity() * sizeof(RowLevel) +
+           (items_.capacity() + items_scratch_.capacity()) * sizeof(RowItem);
+}
+
+std::string RowSet::broken_record(const RowLevel& level, std::size_t i) const {
+    const Aabb box = view().box(i);
+    const Vec3 sides = extent(box);
+    Vec3 lo = box.lo, hi = box.hi;
+    for (int a = 0; a < 3; ++a) {
+        if (!(sides[a] <= level.limit)) return "a box is too large for its level";
+        if (!(sides[a] <= level.reach[static_cast<std::size_t>(a)]))
+            return "a box reaches farther than its level knows";
+        if (a == fit_.axis[0]) continue;
+        const std::int64_t rows = level.listed ? std::int64_t{level.listed_cell(a, hi[a])} - level.listed_cell(a, lo[a])
+                                               : std::int64_t{level.cell(a, hi[a])} - level.cell(a, lo[a]);
+        if (rows > 1) return "a box reaches over more than two rows";
+    }
+    return {};
+}
+
+std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
+    if (boxes.size() != count_) return "the grid does not hold as many boxes as there are";
+    if (count_ == 0) return {};
+    const RowView set = view();
+    Proxy largest = 0;
+    for (const Move& m : boxes) largest = std::max(largest, m.proxy);
+    std::vector<std::uint32_t> where(largest + std::size_t{1}, 0xffffffff);
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        if (proxies_[i] > largest || where[proxies_[i]] != 0xffffffff) return "a record is not of one box alone";
+        where[proxies_[i]] = i;
+    }
+    for (const Move& m : boxes)
+        if (where[m.proxy] == 0xffffffff || !(set.box(where[m.proxy]) == m.box))
+            return "a box has another record than its own";
+
+    std::uint32_t next = 0;
+    const auto [ax, ay, az] = fit_.axis;
+    for (const RowLevel& level : fit_.levels) {
+        if (level.first != next) return "a level does not begin where the one before ends";
+        next += level.count;
+        const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
+        for (std::uint32_t cell = 0; cell < cells; ++cell) {
+            const std::uint32_t begin = table_[level.table + cell], end = table_[level.table + cell + 1];
+            if (begin > end || end > next) return "the cells of a level are not in order";
+            for (std::uint32_t i = begin; i < end; ++i) {
+                std::uint32_t home = 0;
+                for (const int a : {ax, ay, az})
+                    home += level.cell(a, set.lo[static_cast<std::size_t>(a)][i]) *
+                            level.stride[static_cast<std::size_t>(a)];
+                if (home != cell) return "a box stands in another's cell";
+                if (std::string broken = broken_record(level, i); !broken.empty()) return broken;
+            }
+        }
+        if (table_[level.table + cells] != next) return "a level's cells do not hold all its boxes";
+        if (!level.listed) continue;
+        for (std::uint32_t r = 0; r < level.row_count; ++r) {
+            const ListedRow row = rows_[level.first_row + r], after = rows_[level.first_row + r + 1];
+            if (row.first >= after.first) return "a row that is listed holds no box";
+            if (!(row.y < after.y || (row.y == after.y && row.z < after.z))) return "the listed rows are not in order";
+            for (std::uint32_t i = row.first; i < after.first; ++i) {
+                const auto at = [&](int a) { return set.lo[static_cast<std::size_t>(a)][i]; };
+                if (level.listed_cell(ay, at(ay)) != row.y || level.listed_cell(az, at(az)) != row.z)
+                    return "a box stands in another's row";
+                if (i > row.first && at(ax) < set.lo[static_cast<std::size_t>(ax)][i - 1])
+                    return "a row is not in order";
+            }
+        }
+    }
+    if (next != count_) return "the levels do not hold all boxes";
+    return {};
+}
+
+}  // namespace fase::broad

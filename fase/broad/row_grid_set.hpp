@@ -1,0 +1,129 @@
+#pragma once
+/// Boxes sorted into the rows of a grid of several levels, made anew from a list of boxes: what a row grid searches.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fase/broad/structure.hpp"
+
+namespace fase::broad {
+
+/// What may be tuned of a row grid. The pairs and hits that are reported never depend on it, only order and time.
+struct RowGridSettings {
+    /// How the rows of a level are found. A table has a place for every cell; a list names the rows that hold a box.
+    enum class Rows : std::uint8_t { Chosen, Table, List };
+    Rows rows = Rows::Chosen;
+    float cell = 0;                ///< edge of the finest cells, metres; 0: chosen from the boxes
+    float level_ratio = 3;         ///< cells of a level to those of the level below
+    float cells_a_box = 2;         ///< a table has no more cells than that, in the mean
+    std::uint32_t fit_lasts = 64;  ///< commits until levels and cells are chosen anew, if nothing asks for it before
+    std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them
+};
+
+/// One level: boxes up to a size, each in the cell of its lower corner. Arrays go by axis of the world.
+///
+/// A box of the level overlaps no box whose lower corner lies more than one row away from its own.
+struct RowLevel {
+    float limit = 0;  ///< no side is longer; infinity: takes all that is left
+    std::array<float, 3> origin{}, per_cell{};
+    std::array<float, 3> last{};   ///< number of the last cell; beyond it, and below 0, counts as the border cell
+    std::array<float, 3> reach{};  ///< of the boxes in it: no side along that axis is longer
+    std::array<std::uint32_t, 3> stride{};  ///< of a step along an axis, in cells of the table
+    std::uint32_t table = 0;                ///< where its cells begin in the table
+    std::uint32_t first = 0, count = 0;     ///< its records
+    /// Rows that hold boxes stand in a list; the table has but one cell for the level.
+    bool listed = false;
+    double edge = 0;                             ///< of a listed level's rows
+    std::uint32_t first_row = 0, row_count = 0;  ///< in the list of rows
+
+    /// Which cell a coordinate falls into: never smaller for a larger one.
+    [[nodiscard]] std::uint32_t cell(int axis, float v) const {
+        const auto a = static_cast<std::size_t>(axis);
+        const float t = (v - origin[a]) * per_cell[a];
+        const float from_first = t > 0 ? t : 0;
+        return static_cast<std::uint32_t>(from_first < last[a] ? from_first : last[a]);
+    }
+    [[nodiscard]] std::uint32_t cells(int axis) const {
+        return static_cast<std::uint32_t>(last[static_cast<std::size_t>(axis)]) + 1;
+    }
+    /// As cell(), for the rows of a listed level.
+    [[nodiscard]] std::int32_t listed_cell(int axis, float v) const {
+        const double t = (double{v} - double{origin[static_cast<std::size_t>(axis)]}) / edge;
+        constexpr double most = 1 << 30;
+        if (!(t < most)) return 1 << 30;  // a NaN too
+        if (t <= -most) return -(1 << 30);
+        const auto down = static_cast<std::int32_t>(t);
+        return down > t ? down - 1 : down;
+    }
+};
+
+/// Levels and cells that suit a set of boxes.
+struct RowFit {
+    std::array<int, 3> axis{0, 1, 2};  ///< rows run along the first; they are counted along the second, then the third
+    std::vector<RowLevel> levels;      ///< fine ones first; the last takes boxes of any size; none without boxes
+    std::uint32_t table = 0;           ///< size of the table of all levels
+};
+
+/// Chooses from a sample of the boxes, which must be ordinary. O(sample log sample).
+[[nodiscard]] RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings);
+
+/// A row of a listed level that holds a box: its boxes run to the first of the next row.
+struct ListedRow {
+    std::int32_t y = 0, z = 0;
+    std::uint32_t first = 0;
+};
+
+/// What searches read: records in the order of levels, rows, cells. Columns have `row_slack` readable floats beyond
+/// their end.
+struct RowView {
+    std::array<const float*, 3> lo{}, hi{};
+    const Proxy* proxies = nullptr;
+    std::size_t count = 0;
+    const std::uint32_t* table = nullptr;  ///< table[level.table + cell]: first record of the cell
+    std::span<const RowLevel> levels;
+    std::span<const ListedRow> rows;
+    std::array<int, 3> axis{};
+
+    [[nodiscard]] Aabb box(std::size_t i) const {
+        return {{lo[0][i], lo[1][i], lo[2][i]}, {hi[0][i], hi[1][i], hi[2][i]}};
+    }
+};
+inline constexpr std::size_t row_slack = 32;
+
+/// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
+class RowSet {
+public:
+    void build(std::span<const Move> boxes, const RowGridSettings& settings);
+
+    [[nodiscard]] RowView view() const;
+    [[nodiscard]] std::size_t size() const { return count_; }
+    [[nodiscard]] std::size_t cells() const { return fit_.table + rows_.size(); }
+    [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] std::string broken_invariant(std::span<const Move> boxes) const;
+
+private:
+    RowFit fit_;
+    std::array<std::vector<float>, 6> columns_;  // lo x y z, hi x y z
+    std::vector<Proxy> proxies_;
+    std::vector<std::uint32_t> table_;
+    std::vector<ListedRow> rows_;
+    std::size_t count_ = 0;
+    std::size_t fitted_count_ = 0;  // boxes when the levels were chosen
+    std::uint32_t age_ = 0;         // builds since then
+    bool stale_ = true;
+
+    struct RowItem {
+        std::uint64_t row;
+        std::uint32_t x, order;
+    };
+    std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
+
+    void fit(std::span<const Move> boxes, const RowGridSettings& settings);
+    void make_room();
+    void sort_listed(std::span<const Move> boxes, RowLevel& level);
+    [[nodiscard]] std::string broken_record(const RowLevel& level, std::size_t i) const;
+};
+
+}  // namespace fase::broad

@@ -1,0 +1,185 @@
+/// Sorting boxes into cells, for one SIMD target. Included inside its namespace by row_grid_kernels.cpp, hence no
+/// #pragma once and no includes.
+
+HWY_INLINE std::uint32_t counter_of(const Move& m, const RowFit& fit, std::size_t level_index) {
+    const RowLevel& level = fit.levels[level_index];
+    return level.table + 1 + level.cell(0, m.box.lo.x) * level.stride[0] + level.cell(1, m.box.lo.y) * level.stride[1] +
+           level.cell(2, m.box.lo.z) * level.stride[2];
+}
+
+inline std::size_t level_for(const Move& m, const RowFit& fit) {
+    const Vec3 e = extent(m.box);
+    const float side = std::max(e.x, std::max(e.y, e.z));
+    std::size_t k = 0;
+    while (!(side <= fit.levels[k].limit)) ++k;
+    return k;
+}
+
+#if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
+inline std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+    const RowLevel& low = fit.levels[0];
+    std::size_t outside = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const std::uint32_t counter = counter_of(boxes[i], fit, level_for(boxes[i], fit));
+        keys[i] = std::bit_cast<float>(counter);
+        ++table[counter];
+        bool far = false;
+        Vec3 lo = boxes[i].box.lo;
+        for (int a = 0; a < 3; ++a) {
+            const auto k = static_cast<std::size_t>(a);
+            const float t = (lo[a] - low.origin[k]) * low.per_cell[k];
+            far |= t < -1 || t > low.last[k] + 2;
+        }
+        outside += far ? 1 : 0;
+    }
+    return outside;
+}
+
+inline std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
+                                              const std::array<float*, 6>& columns, Proxy* order) {
+    Vec3 longest;
+    for (std::size_t i = begin; i < end; ++i) {
+        const Move& m = boxes[order[i]];
+        order[i] = m.proxy;
+        for (int a = 0; a < 3; ++a) {
+            Vec3 lo = m.box.lo, hi = m.box.hi;
+            columns[static_cast<std::size_t>(a)][i] = lo[a];
+            columns[static_cast<std::size_t>(a) + 3][i] = hi[a];
+        }
+        longest = max(longest, extent(m.box));
+    }
+    std::array<float, 3> reach;
+    for (int a = 0; a < 3; ++a) reach[static_cast<std::size_t>(a)] = std::nextafter(longest[a], Aabb::infinity);
+    return reach;
+}
+#else
+/// Move is a proxy and six floats: rows of seven floats, of which Wide::gather8 reads eight.
+static_assert(sizeof(Move) == 28 && offsetof(Move, box) == 4);
+
+using IntTag = hn::RebindToSigned<Wide::Tag>;
+
+/// Boxes turned into columns, a lane a box: proxy, lo x y z, hi x y z, and what lies behind.
+struct Turned {
+    Wide row[8];
+
+    /// `order` names Wide::lanes boxes, the last of all not among them.
+    HWY_INLINE void read(const Move* boxes, const std::uint32_t* order) {
+        Wide::gather8(reinterpret_cast<const float*>(boxes), order, 7, row);
+    }
+    /// Any boxes: copied to where more may be read.
+    HWY_INLINE void read_copies(const Move* boxes, const std::uint32_t* order) {
+        std::array<Move, Wide::lanes + 1> copies;
+        std::array<std::uint32_t, Wide::lanes> copy_order;
+        for (std::uint32_t k = 0; k < Wide::lanes; ++k) {
+            copies[k] = boxes[order[k]];
+            copy_order[k] = k;
+        }
+        read(copies.data(), copy_order.data());
+    }
+    HWY_INLINE hn::Vec<Wide::Tag> longest_side() const {
+        const auto x = hn::Sub(row[4].v, row[1].v), y = hn::Sub(row[5].v, row[2].v), z = hn::Sub(row[6].v, row[3].v);
+        return hn::Max(x, hn::Max(y, z));
+    }
+};
+
+std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
+                             std::uint32_t* HWY_RESTRICT table) {
+    constexpr std::size_t lanes = Wide::lanes;
+    const Wide::Tag d;
+    const IntTag di;
+    const RowLevel& low = fit.levels[0];
+    const auto limit = hn::Set(d, low.limit);
+    hn::Vec<Wide::Tag> origin[3], per_cell[3], last[3];
+    hn::Vec<IntTag> stride[3];
+    for (std::size_t a = 0; a < 3; ++a) {
+        origin[a] = hn::Set(d, low.origin[a]);
+        per_cell[a] = hn::Set(d, low.per_cell[a]);
+        last[a] = hn::Set(d, low.last[a]);
+        stride[a] = hn::Set(di, static_cast<std::int32_t>(low.stride[a]));
+    }
+    const auto zero = hn::Zero(d), before = hn::Set(d, -1.0f), one = hn::Set(d, 1.0f);
+    const auto first_counter = hn::Set(di, static_cast<std::int32_t>(low.table + 1));
+    std::size_t outside = 0;
+    for (std::size_t i = 0; i < boxes.size(); i += lanes) {
+        const std::size_t count = std::min(lanes, boxes.size() - i);
+        std::array<std::uint32_t, lanes> order;
+        for (std::size_t k = 0; k < lanes; ++k)
+            order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
+        Turned turned;
+        if (i + lanes < boxes.size()) {
+            turned.read(boxes.data(), order.data());
+        } else {
+            turned.read_copies(boxes.data(), order.data());
+        }
+        auto far = hn::Lt(zero, zero);
+        auto counter = first_counter;
+        for (std::size_t a = 0; a < 3; ++a) {  // as RowLevel::cell()
+            const auto t = hn::Mul(hn::Sub(turned.row[1 + a].v, origin[a]), per_cell[a]);
+            const auto inside = hn::Min(hn::Max(t, zero), last[a]);
+            counter = hn::Add(counter, hn::Mul(hn::ConvertTo(di, inside), stride[a]));
+            far = hn::Or(far, hn::Or(hn::Lt(t, before), hn::Gt(t, hn::Add(last[a], hn::Add(one, one)))));
+        }
+        alignas(64) std::array<std::int32_t, lanes> counters;
+        hn::StoreU(counter, di, counters.data());
+        hn::StoreU(hn::BitCast(d, counter), d, keys + i);
+        const auto above = hn::Gt(turned.longest_side(), limit);
+        if (HWY_UNLIKELY(!hn::AllFalse(d, above)) || count < lanes) {
+            for (std::size_t k = 0; k < count; ++k) {
+                const Move& m = boxes[i + k];
+                const std::size_t level = level_for(m, fit);
+                if (level != 0) counters[k] = static_cast<std::int32_t>(counter_of(m, fit, level));
+                keys[i + k] = std::bit_cast<float>(counters[k]);
+            }
+        }
+        for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
+        outside += hn::CountTrue(d, far);
+    }
+    return outside;
+}
+
+std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
+                                       const std::array<float*, 6>& columns, Proxy* HWY_RESTRICT order) {
+    constexpr std::size_t lanes = Wide::lanes, ahead = 32;
+    const Wide::Tag d;
+    const auto last = static_cast<std::uint32_t>(boxes.size() - 1);
+    hn::Vec<Wide::Tag> reach[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = begin; i < end; i += lanes) {
+        if (i + ahead + lanes <= end) {
+            for (std::size_t k = 0; k < lanes; ++k) {
+                const char* box = reinterpret_cast<const char*>(boxes.data() + order[i + ahead + k]);
+                __builtin_prefetch(box);
+                __builtin_prefetch(box + sizeof(Move) - 1);
+            }
+        }
+        std::array<std::uint32_t, lanes> mine;
+        bool any_last = false;
+        for (std::size_t k = 0; k < lanes; ++k) {
+            mine[k] = order[std::min(i + k, end - 1)];
+            any_last |= mine[k] == last;
+        }
+        Turned turned;
+        if (HWY_UNLIKELY(any_last)) {
+            turned.read_copies(boxes.data(), mine.data());
+        } else {
+            turned.read(boxes.data(), mine.data());
+        }
+        for (std::size_t a = 0; a < 3; ++a)
+            reach[a] = hn::Max(reach[a], hn::Sub(turned.row[4 + a].v, turned.row[1 + a].v));
+        if (i + lanes <= end) {
+            turned.row[0].store(reinterpret_cast<float*>(order + i));
+            for (std::size_t k = 0; k < 6; ++k) turned.row[1 + k].store(columns[k] + i);
+        } else {
+            for (std::size_t k = 0; i + k < end; ++k) {
+                const Move& m = boxes[mine[k]];
+                order[i + k] = m.proxy;
+                const float bounds[6] = {m.box.lo.x, m.box.lo.y, m.box.lo.z, m.box.hi.x, m.box.hi.y, m.box.hi.z};
+                for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c];
+            }
+        }
+    }
+    std::array<float, 3> longest;
+    for (std::size_t a = 0; a < 3; ++a)  // rounded up: it must not be less than the true length
+        longest[a] = std::nextafter(hn::GetLane(hn::MaxOfLanes(d, reach[a])), Aabb::infinity);
+    return longest;
+}
+#endif
