@@ -1,0 +1,217 @@
+#include "fase/query/index.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "fase/broad/registry.hpp"
+#include "fase/core/random.hpp"
+
+namespace fase {
+namespace {
+
+Aabb cube(float x, float y = 0, float z = 0, float side = 1) { return {{x, y, z}, {x + side, y + side, z + side}}; }
+
+/// Three in a row of which two touch, and a far one.
+template <class S> Index<std::string, S> four() {
+    Index<std::string, S> index;
+    for (const auto& [name, x] : {std::pair{"a", 0.f}, {"b", 1.f}, {"c", 2.5f}, {"d", 9.f}})
+        index.insert(cube(x), name);
+    index.commit();
+    return index;
+}
+
+using Names = std::vector<std::string>;
+
+template <class F> void on_every_structure(F&& f) {
+    broad::for_each_structure([&]<broad::Structure S>() {
+        SCOPED_TRACE(S::info.name);
+        f.template operator()<S>();
+    });
+}
+
+TEST(Index, HandsOutPairsInOrderOnce) {
+    on_every_structure([]<class S>() {
+        auto index = four<S>();
+        index.insert(cube(0.5f), "e");
+        index.commit();
+        Names pairs;
+        index.pairs([&](std::string& a, const std::string& b) { pairs.push_back(a + b); });
+        EXPECT_EQ(pairs, (Names{"ab", "ae", "be"}));
+        Names with_ids;
+        index.pairs([&](auto a, std::string& left, auto b, std::string& right) {
+            EXPECT_LT(a.index, b.index);
+            with_ids.push_back(left + right);
+        });
+        EXPECT_EQ(with_ids, pairs);
+    });
+}
+
+TEST(Index, LetsThePairsMoveWhatIsStored) {
+    on_every_structure([]<class S>() {
+        auto index = four<S>();
+        index.pairs([&](auto, auto&, auto b, auto&) { EXPECT_TRUE(index.move(b, cube(5))); });
+        index.commit();
+        int pairs = 0;
+        index.pairs([&](auto&, auto&) { ++pairs; });
+        EXPECT_EQ(pairs, 0);
+    });
+}
+
+TEST(Index, LeavesOutPairsOfTwoThatRest) {
+    on_every_structure([]<class S>() {
+        Index<int, S> index;
+        std::vector<typename Index<int, S>::Id> ids;
+        for (int i = 0; i < 6; ++i) ids.push_back(index.insert(cube(static_cast<float>(i)), i));
+        for (int i = 0; i < 4; ++i) EXPECT_TRUE(index.set_awake(ids[static_cast<std::size_t>(i)], false));
+        index.commit();
+        EXPECT_FALSE(index.is_awake(ids[0]));
+        EXPECT_TRUE(index.is_awake(ids[5]));
+        std::vector<std::pair<int, int>> pairs;
+        index.awake_pairs([&](int a, int b) { pairs.emplace_back(a, b); });
+        EXPECT_EQ(pairs, (std::vector<std::pair<int, int>>{{3, 4}, {4, 5}}));
+    });
+}
+
+TEST(Index, AsksAnotherIndexWithoutPuttingAnythingIntoIt) {
+    on_every_structure([]<class S>() {
+        auto players = four<S>();
+        Index<int> walls;
+        walls.insert(cube(2), 0);
+        walls.insert({{0, 1, 0}, {9, 1, 1}}, 1);
+        walls.commit();
+        Names met;
+        players.pairs_with(walls,
+                           [&](std::string& player, int& wall) { met.push_back(player + std::to_string(wall)); });
+        EXPECT_EQ(met, (Names{"a1", "b0", "b1", "c0", "c1", "d1"}));
+        EXPECT_EQ(walls.size(), 2u);
+        Names again;
+        players.pairs_with(std::as_const(walls), [&](auto, std::string& player, auto, const int& wall) {
+            again.push_back(player + std::to_string(wall));
+        });
+        EXPECT_EQ(again, met);
+    });
+}
+
+TEST(Index, AnswersWhereThingsAre) {
+    on_every_structure([]<class S>() {
+        const auto index = four<S>();
+        Names found;
+        const auto keep = [&](const std::string& name) { found.push_back(name); };
+        index.overlapping(Aabb{{1, 0, 0}, {2.5f, 1, 1}}, keep);
+        EXPECT_EQ(std::exchange(found, {}), (Names{"a", "b", "c"}));
+        index.overlapping(query::SphereRegion({4, 0.5, 0.5}, 0.5f), keep);
+        EXPECT_EQ(std::exchange(found, {}), Names{"c"});
+        index.at({1, 0.5, 0.5}, keep);
+        EXPECT_EQ(std::exchange(found, {}), (Names{"a", "b"}));
+        index.for_each([&](auto id, const std::string& name) { found.push_back(name + std::to_string(id.index)); });
+        EXPECT_EQ(std::exchange(found, {}), (Names{"a0", "b1", "c2", "d3"}));
+        const auto near = index.nearest({4, 0.5, 0.5}, 2);
+        ASSERT_EQ(near.size(), 2u);
+        EXPECT_EQ(index.value(near[0].id), "c");
+        EXPECT_EQ(near[0].at, 0.5f);
+        EXPECT_EQ(index.value(near[1].id), "b");
+        EXPECT_EQ(index.nearest({4, 0.5, 0.5}, 9, 1).size(), 1u);
+        Frustum ahead;  // x from 2 to 4
+        for (std::size_t side = 0; side < 6; ++side) {
+            Vec3d normal;
+            normal[static_cast<int>(side / 2)] = side % 2 == 0 ? -1 : 1;
+            ahead.sides[side] = {normal, side == 0 ? -2.0 : 4.0};
+        }
+        index.cull(ahead, keep);
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, (Names{"b", "c"}));
+    });
+}
+
+TEST(Index, CastsRaysAgainstBoxesOrWhatIsInThem) {
+    on_every_structure([]<class S>() {
+        const auto index = four<S>();
+        const Ray ray{{-3, 0.5, 0.5}, {1, 0, 0}, 100};
+        const auto first = index.cast_ray(ray);
+        ASSERT_TRUE(first);
+        EXPECT_EQ(index.value(first->id), "a");
+        EXPECT_NEAR(first->at, 3, 1e-6);
+        EXPECT_FALSE(index.cast_ray({{-3, 5, 0}, {1, 0, 0}, 100}));
+        const auto only_late_names = [](const std::string& name, const Aabb&, float entry, float) {
+            return name < "c" ? broad::beyond : entry + 0.25f;
+        };
+        const auto exact = index.cast_ray(ray, only_late_names);
+        ASSERT_TRUE(exact);
+        EXPECT_EQ(index.value(exact->id), "c");
+        EXPECT_NEAR(exact->at, 5.75, 1e-5);
+        std::vector<typename Index<std::string, S>::Hit> all;
+        index.cast_ray_through(ray, all);
+        ASSERT_EQ(all.size(), 4u);
+        EXPECT_EQ(index.value(all[3].id), "d");
+    });
+}
+
+TEST(Index, HandsOutLeavesWithTheirContents) {
+    on_every_structure([]<class S>() {
+        auto index = four<S>();
+        index.for_each_leaf([](auto leaf) {
+            for (std::size_t i = 0; i < leaf.size(); ++i)
+                if (leaf[i].size() == 1) leaf[i] += "!";
+        });
+        Names names;
+        std::as_const(index).for_each_leaf([&](auto leaf) {
+            EXPECT_GE(leaf.depth(), 0);
+            for (std::size_t i = 0; i < leaf.size(); ++i) {
+                EXPECT_TRUE(overlaps(leaf.cell(), index.box(leaf.id(i))));
+                names.push_back(leaf[i]);
+            }
+        });
+        std::sort(names.begin(), names.end());
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        EXPECT_EQ(names, (Names{"a!", "b!", "c!", "d!"}));
+    });
+}
+
+TEST(Index, RefusesIdsThatAreStale) {
+    Index<std::string> index;
+    const auto a = index.insert(cube(0), "a");
+    EXPECT_TRUE(index.erase(a));
+    EXPECT_FALSE(index.contains(a));
+    const auto b = index.insert(cube(1), "b");
+    index.commit();
+    EXPECT_EQ(b.index, a.index) << "the place is used again";
+    EXPECT_FALSE(index.erase(a));
+    EXPECT_FALSE(index.move(a, cube(5)));
+    EXPECT_FALSE(index.set_awake(a, false));
+    EXPECT_FALSE(index.contains({}));
+    EXPECT_TRUE(index.contains(b));
+    EXPECT_EQ(index.box(b), cube(1));
+    index.clear();
+    EXPECT_FALSE(index.contains(b));
+    EXPECT_EQ(index.size(), 0u);
+}
+
+TEST(Index, LetsGoOfWhatIsErased) {
+    const auto shared = std::make_shared<int>(1);
+    Index<std::shared_ptr<int>> index;
+    const auto id = index.insert(cube(0), shared);
+    index.insert(cube(0), shared);
+    EXPECT_EQ(shared.use_count(), 3);
+    index.erase(id);
+    EXPECT_EQ(shared.use_count(), 2);
+    index.clear();
+    EXPECT_EQ(shared.use_count(), 1);
+}
+
+TEST(Index, CanBeFilledAnewEachFrameForYears) {
+    Index<std::unique_ptr<int>> index;  // values need only be movable
+    Index<std::unique_ptr<int>>::Id last;
+    for (int frame = 0; frame < 70'000; ++frame) {
+        index.clear();
+        last = index.insert(cube(0), std::make_unique<int>(frame));
+        index.commit();
+    }
+    EXPECT_EQ(last.index, 0u);
+    EXPECT_EQ(*index.value(last), 69'999);
+}
+
+}  // namespace
+}  // namespace fase
