@@ -11,6 +11,7 @@
 #include "cli/generate.hpp"
 #include "cli/info.hpp"
 #include "cli/output.hpp"
+#include "cli/pairs.hpp"
 #include "cli/run.hpp"
 #include "cli/start.hpp"
 #include "cli/view.hpp"
@@ -49,6 +50,7 @@ int run_program(int count, char** arguments) {
     add_generate(app, start);
     add_distance(app, start);
     add_draw(app, start);
+    add_pairs(app, start);
 #ifdef HAS_FASE_BENCH
     add_bench(app, start);
 #endif

@@ -27,10 +27,6 @@ using AllStructures = StructureList<  //
     Bsp,                              //
     DynamicBvh,                       //
     WideBvh>;
-DynamicBvh,  //
-    WideBvh > ;
-RowGrid,  //
-    DynamicBvh > ;
 
 /// Calls f.operator()<S>() for every structure, in the order of the list.
 template <class F, class... S> void for_each_structure(F&& f, StructureList<S...>) {

@@ -1,0 +1,180 @@
+/// How long structures take to find the pairs of a trace, and whether they find the right ones.
+#include "cli/measure_pairs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "fase/broad/plain_sweep.hpp"
+#include "fase/core/random.hpp"
+
+namespace fase::cli {
+namespace {
+
+using broad::Move;
+using broad::Pair;
+using broad::Population;
+using broad::Proxy;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t most_pairs = std::uint64_t{1} << 28;  // 2 GiB
+constexpr std::size_t most_tried = 1000;                      // boxes for which the judge tries all
+
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// How many pairs there are, about: some boxes are tried against all.
+double guessed_pairs(std::span<const Aabb> boxes) {
+    constexpr std::size_t most_samples = 128;
+    const std::size_t samples = std::min(most_samples, boxes.size());
+    Random random(1);
+    std::uint64_t hits = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        const Aabb mine = boxes[samples == boxes.size() ? i : random.below(boxes.size())];
+        std::uint64_t own = 0;
+        for (const Aabb& other : boxes) own += overlaps(mine, other) ? 1 : 0;
+        hits += own - 1;  // but itself
+    }
+    return static_cast<double>(hits) / static_cast<double>(samples) * static_cast<double>(boxes.size()) / 2;
+}
+
+/// All pairs but those of two static boxes, found in the plainest way that is fast enough.
+void judge_pairs(std::span<const Aabb> boxes, std::span<const Population> populations, std::vector<Pair>& out) {
+    const auto wanted = [&](Proxy p, Proxy q) {
+        return populations[p] != Population::Static || populations[q] != Population::Static;
+    };
+    if (boxes.size() > most_tried) {
+        std::vector<Move> moves;
+        moves.reserve(boxes.size());
+        for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
+        return broad::find_pairs_by_sweep(moves, out, wanted);
+    }
+    for (Proxy p = 0; p < boxes.size(); ++p)
+        for (Proxy q = p + 1; q < boxes.size(); ++q)
+            if (overlaps(boxes[p], boxes[q]) && wanted(p, q)) out.push_back({p, q});
+}
+
+/// How long brute force takes for the survey's frames, about: one box against all others is timed.
+double brute_force_seconds(std::span<const Aabb> boxes, const TraceSurvey& survey) {
+    constexpr std::size_t most = 1500;
+    broad::AnyStructure some = *broad::AnyStructure::named(broad::BruteForce::info.name);
+    std::vector<Move> moves;
+    for (std::size_t i = 0; i < std::min(most, boxes.size()); ++i) moves.push_back({static_cast<Proxy>(i), boxes[i]});
+    some.build(moves);
+    std::vector<Pair> pairs;
+    some.find_pairs(pairs);  // warms up
+    pairs.clear();
+    const auto begin = Clock::now();
+    some.find_pairs(pairs);
+    const auto tests = [](double movers, double rest) { return movers * movers / 2 + movers * rest; };
+    const double a_test = ms_since(begin) / 1000 / std::max(tests(static_cast<double>(moves.size()), 0), 1.0);
+    const auto all = static_cast<double>(boxes.size());
+    const auto fixed = static_cast<double>(survey.static_boxes), asleep = static_cast<double>(survey.asleep_boxes);
+    const double frame = tests(all - fixed - asleep, fixed + asleep), build = tests(asleep, fixed);
+    return a_test * (build + frame * static_cast<double>(survey.frames + 1));
+}
+
+}  // namespace
+
+std::vector<Population> populations_of(const record::TraceReader& trace) {
+    std::vector<Population> populations;
+    populations.reserve(trace.boxes());
+    for (const std::uint8_t flag : trace.flags()) {
+        populations.push_back((flag & record::trace_static) != 0   ? Population::Static
+                              : (flag & record::trace_asleep) != 0 ? Population::Asleep
+                                                                   : Population::Awake);
+    }
+    return populations;
+}
+
+Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell) {
+    TraceSurvey seen;
+    seen.frames = frames == 0 ? trace.frames() : std::min<std::uint64_t>(frames, trace.frames());
+    const std::vector<Population> populations = populations_of(trace);
+    const auto count = [&](Population one) {
+        return static_cast<std::uint64_t>(std::count(populations.begin(), populations.end(), one));
+    };
+    seen.static_boxes = count(Population::Static);
+    seen.asleep_boxes = count(Population::Asleep);
+    trace.rewind();
+    std::vector<Aabb> boxes;
+    std::vector<Pair> pairs;
+    for (std::uint64_t frame = 0; frame < seen.frames; ++frame) {
+        if (!tell(frame, seen.frames, judge ? "the right pairs" : "a look at all boxes")) break;
+        if (const Result<bool> read = trace.next(boxes); !read) return read.error();
+        if (const double guess = guessed_pairs(boxes); guess > static_cast<double>(most_pairs)) {
+            return Error{Status::Capacity,
+                         trace.path(),
+                         fmt::format("frame {}: found about {:.1e} pairs, need at most {}", frame, guess, most_pairs),
+                         {}};
+        }
+        if (!judge) continue;
+        pairs.clear();
+        judge_pairs(boxes, populations, pairs);
+        seen.judged.push_back(broad::print_of(pairs));
+    }
+    return seen;
+}
+
+Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
+                                  TaskRunner& tasks, std::optional<double> most_seconds, const Tell& tell) {
+    PairFigures figures;
+    figures.structure = choice.asked;
+    figures.chosen = choice.chosen;
+    figures.threads = tasks.threads();
+    std::vector<Aabb> boxes;
+    trace.rewind();
+    if (const Result<bool> read = trace.next(boxes); !read) return read.error();
+    const bool tries_all = choice.chosen == broad::BruteForce::info.name;
+    if (const double guess = tries_all && most_seconds ? brute_force_seconds(boxes, survey) : 0;
+        guess > most_seconds.value_or(0)) {
+        figures.skipped = fmt::format("would take about {:.0f} s, more than {} s", guess, *most_seconds);
+        return figures;
+    }
+
+    const auto start = Clock::now();
+    broad::PairFinder finder(choice.empty);
+    const std::vector<Population> populations = populations_of(trace);
+    const auto begin_of_build = Clock::now();
+    finder.build(tasks, boxes, populations);
+    figures.build_ms = ms_since(begin_of_build);
+
+    std::vector<Pair> pairs;
+    finder.find_pairs(tasks, pairs);  // so that memory is at hand
+    std::vector<double> times;
+    Hasher hash;
+    bool right = true;
+    for (std::uint64_t frame = 0; frame < survey.frames; ++frame) {
+        if (!tell(frame, survey.frames, choice.asked)) break;
+        if (most_seconds && ms_since(start) > *most_seconds * 1000) {
+            figures.skipped =
+                fmt::format("took more than {} s for {} frames of {}", *most_seconds, frame, survey.frames);
+            return figures;
+        }
+        if (frame > 0) {
+            if (const Result<bool> read = trace.next(boxes); !read) return read.error();
+        }
+        pairs.clear();
+        const auto begin = Clock::now();
+        if (frame > 0) finder.update(boxes);
+        finder.find_pairs(tasks, pairs);
+        times.push_back(ms_since(begin));
+
+        const broad::PairSetPrint print = broad::print_of(pairs);
+        hash.add(print.sum);
+        figures.pairs_sum += print.count;
+        figures.pairs_last = print.count;
+        if (frame == 0) figures.pairs_first = print.count;
+        if (frame < survey.judged.size()) right = right && print == survey.judged[frame];
+    }
+    figures.frames = times.size();
+    figures.ms = bench::timing_of(times);
+    figures.hash = hash.value();
+    figures.bytes = finder.bytes();
+    if (!survey.judged.empty()) figures.right = right;
+    return figures;
+}
+
+}  // namespace fase::cli
