@@ -1,4 +1,4 @@
-/// The command `fase generate`: writes a scene made by rule.
+/// The command `fase generate`: writes a scene or a trace made by rule.
 #include "cli/generate.hpp"
 
 #include <fmt/format.h>
@@ -9,40 +9,61 @@
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/start.hpp"
+#include "fase/record/generate_trace.hpp"
 #include "fase/scene/generate.hpp"
 #include "fase/scene/gltf_write.hpp"
 
 namespace fase::cli {
 namespace {
 
-/// A line a kind: its name, what it is, how many bodies it has when not told.
-std::string kinds() {
+/// A line a kind: its name, what it is, how many it has when not told.
+template <class Kinds> std::string lines_of(const Kinds& kinds, const char* things) {
     std::string text;
-    for (const scene::Generator& kind : scene::generators()) {
-        text += fmt::format("  {:<14} {} ({} bodies)\n", kind.name, kind.description, kind.default_count);
-    }
+    for (const auto& kind : kinds)
+        text += fmt::format("  {:<14} {} ({} {})\n", kind.name, kind.description, kind.default_count, things);
     return text;
+}
+
+/// An error of the library with the names that the command line has.
+Error by_option(Error error) {
+    if (error.where == "kind") error.where = "KIND";
+    if (error.where == "count") error.where = "--count";
+    return error;
+}
+
+int write_scene(const GenerateOptions& options) {
+    if (options.frames != 0)
+        return refuse({Status::BadArgument, "--frames", "found a scene, need a trace (.aabt)", {}});
+    const Result<scene::Scene> made = scene::generate(options.kind, {options.count, options.seed});
+    if (!made) return refuse(by_option(made.error()));
+    if (const Result<void> written = scene::write_gltf(*made, options.output); !written) return refuse(written.error());
+    fmt::print("{}: {}, {} bodies, {} of them dynamic\n", printable(options.output), options.kind, made->bodies.size(),
+               scene::dynamic_bodies(*made));
+    return exit_ok;
+}
+
+int write_trace(const GenerateOptions& options) {
+    const Result<record::MadeTrace> made =
+        record::generate_trace(options.kind, {options.count, options.frames, options.seed}, options.output);
+    if (!made) return refuse(by_option(made.error()));
+    fmt::print("{}: {}, {} boxes, {} static, {} asleep, {} frames\n", printable(options.output), options.kind,
+               made->boxes, made->static_boxes, made->asleep_boxes, made->frames);
+    return exit_ok;
 }
 
 }  // namespace
 
 int run_generate(const GenerateOptions& options) {
     if (auto writable = check_output(options.output); !writable) return refuse(writable.error());
-    const bool known_ending = options.output.ends_with(".glb") || options.output.ends_with(".gltf");
-    if (!known_ending)
-        return refuse({Status::BadArgument, options.output, "found another ending, need .glb or .gltf", {}});
+    const bool scene = options.output.ends_with(".glb") || options.output.ends_with(".gltf");
+    if (!scene && !options.output.ends_with(".aabt")) {
+        return refuse({Status::BadArgument,
+                       options.output,
+                       "found another ending, need .glb or .gltf for a scene, .aabt for a trace",
+                       {}});
+    }
     try {
-        const Result<scene::Scene> made = scene::generate(options.kind, {options.count, options.seed});
-        if (!made) {
-            Error error = made.error();
-            error.where = error.where == "kind" ? "KIND" : "--" + error.where;
-            return refuse(error);
-        }
-        if (const Result<void> written = scene::write_gltf(*made, options.output); !written)
-            return refuse(written.error());
-        fmt::print("{}: {}, {} bodies, {} of them dynamic\n", printable(options.output), options.kind,
-                   made->bodies.size(), scene::dynamic_bodies(*made));
-        return exit_ok;
+        return scene ? write_scene(options) : write_trace(options);
     } catch (const std::bad_alloc&) {
         return refuse(
             {Status::NoMemory, "--count", fmt::format("found too little memory for {} bodies", options.count), {}});
@@ -51,15 +72,19 @@ int run_generate(const GenerateOptions& options) {
 
 void add_generate(CLI::App& app, Start& start) {
     auto& generate = start.options<GenerateOptions>();
-    CLI::App& command = *app.add_subcommand("generate", "Write a scene made by rule");
+    CLI::App& command = *app.add_subcommand("generate", "Write a scene, or a trace of boxes, made by rule");
     add_text(command, "KIND", "What to make, see below", generate.kind)->required();
-    add_count(command, "Bodies, roughly", generate.count);
+    add_count(command, "Bodies, roughly; boxes of a trace", generate.count);
+    add_whole_number(command, "--frames", "Of a trace (default: the kind's own)", 1, 1'000'000, generate.frames);
     add_seed(command, "Another one of the kind (default 1)", generate.seed);
-    add_text(command, "-o,--output", "The .glb or .gltf file to write", generate.output)->required();
-    command.footer("\nKinds:\n" + kinds() +
+    add_text(command, "-o,--output", "The file to write: .glb or .gltf a scene, .aabt a trace", generate.output)
+        ->required();
+    command.footer("\nScenes:\n" + lines_of(scene::generators(), "bodies") + "\nTraces:\n" +
+                   lines_of(record::trace_kinds(), "boxes") +
                    "\nExamples:\n"
                    "  fase generate castle -o castle.glb\n"
-                   "  fase generate pile --count 500 --seed 7 -o pile.gltf");
+                   "  fase generate pile --count 500 --seed 7 -o pile.gltf\n"
+                   "  fase generate rain --count 100000 --frames 300 -o rain.aabt");
     start.on(command, [&generate] { return run_generate(generate); });
 }
 

@@ -19,6 +19,7 @@
 #include "cli/start.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/recorder.hpp"
+#include "fase/record/world_trace.hpp"
 #include "fase/scene/generate.hpp"
 #include "fase/scene/gltf.hpp"
 #include "fase/world/world.hpp"
@@ -70,8 +71,31 @@ Result<std::uint64_t> steps_of(const RunOptions& options, float time_step) {
 struct Run {
     World world;
     std::optional<record::Recorder> recorder;
+    std::optional<record::WorldTrace> trace;
     RunSummary summary;
+
+    /// The world as it is now, to all files that are written.
+    Result<void> write_frame() {
+        if (recorder) {
+            if (auto added = recorder->add_frame(world); !added) return added;
+        }
+        if (trace) {
+            if (auto added = trace->add_frame(world); !added) return added;
+        }
+        return {};
+    }
 };
+
+/// Whether the files that are to be written can be.
+Result<void> check_outputs(const RunOptions& options) {
+    for (const std::string* out : {&options.record, &options.trace}) {
+        if (out->empty()) continue;
+        if (auto writable = check_output(*out, options.scene); !writable) return writable;
+    }
+    if (!options.trace.empty() && options.trace == options.record)
+        return Error{Status::Io, options.trace, "found one file for --record and --trace, need two", {}};
+    return {};
+}
 
 Result<Run> prepare(const RunOptions& options) {
     if (options.structure != "auto") {
@@ -83,9 +107,7 @@ Result<Run> prepare(const RunOptions& options) {
                          {}};
         }
     }
-    if (!options.record.empty()) {
-        if (auto writable = check_output(options.record, options.scene); !writable) return writable.error();
-    }
+    if (auto writable = check_outputs(options); !writable) return writable.error();
     const Result<scene::Scene> scene = load(options);
     if (!scene) return scene.error();
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -99,7 +121,7 @@ Result<Run> prepare(const RunOptions& options) {
         error.where = options.scene + ": " + error.where;
         return error;
     }
-    Run run{*std::move(made), {}, {}};
+    Run run{*std::move(made), {}, {}, {}};
     run.summary.scene = options.scene;
     run.summary.bodies = scene->bodies.size();
     run.summary.dynamic_bodies = scene::dynamic_bodies(*scene);
@@ -120,6 +142,12 @@ Result<Run> prepare(const RunOptions& options) {
         run.recorder = *std::move(recorder);
         run.summary.recording = options.record;
     }
+    if (!options.trace.empty()) {
+        Result<record::WorldTrace> trace = record::WorldTrace::create(options.trace, run.world);
+        if (!trace) return trace.error();
+        run.trace = *std::move(trace);
+        run.summary.trace = options.trace;
+    }
     return run;
 }
 
@@ -127,27 +155,31 @@ Result<Run> prepare(const RunOptions& options) {
 Result<void> simulate(Run& run, ProgressForm form) {
     RunSummary& summary = run.summary;
     Progress progress(form, "step", summary.asked_steps);
-    if (run.recorder) {
-        if (auto added = run.recorder->add_frame(run.world); !added) return added.error();
-    }
+    if (auto written = run.write_frame(); !written) return written;
     for (std::uint64_t i = 0; i < summary.asked_steps && Interrupts::signal() == 0; ++i) {
         const Result<StepReport> report = run.world.step();
         if (!report) return report.error();
         summary.add(*report);
-        if (run.recorder) {
-            if (auto added = run.recorder->add_frame(run.world); !added) return added.error();
-        }
+        if (auto written = run.write_frame(); !written) return written;
         if (progress.due()) progress.update(i + 1, fmt::format("{:.2f} ms  {} awake", report->total_ms, report->awake));
     }
     return {};
 }
 
-/// Gives the recording its name, whatever came before, and says what is in it.
-Result<void> finish_recording(Run& run) {
-    if (!run.recorder) return {};
-    const Result<void> finished = run.recorder->finish();
-    run.summary.recorded_frames = run.recorder->writer().frames();
-    run.summary.recorded_bytes = run.recorder->writer().bytes();
+/// Gives recording and trace their names, whatever came before, and says what is in them.
+Result<void> finish_files(Run& run) {
+    Result<void> finished;
+    if (run.recorder) {
+        finished = run.recorder->finish();
+        run.summary.recorded_frames = run.recorder->writer().frames();
+        run.summary.recorded_bytes = run.recorder->writer().bytes();
+    }
+    if (run.trace) {
+        const Result<void> traced = run.trace->finish();
+        run.summary.traced_frames = run.trace->writer().frames();
+        run.summary.traced_bytes = run.trace->writer().bytes();
+        if (finished) finished = traced;
+    }
     return finished;
 }
 
@@ -158,7 +190,7 @@ int run_scene(const RunOptions& options) {
     Result<Run> run = prepare(options);
     if (!run) return refuse(run.error());
     const Result<void> simulated = simulate(*run, progress_form(options.json));
-    const Result<void> recorded = finish_recording(*run);
+    const Result<void> recorded = finish_files(*run);
     if (!simulated) return refuse(simulated.error());
     if (!recorded) return refuse(recorded.error());
 
@@ -194,12 +226,13 @@ void add_run(CLI::App& app, Start& start) {
     command.add_flag("--contacts", run.record_contacts, "Record all contact points too")->needs(record);
     command.add_flag("--durable", run.durable, "Force each block of the recording to the disk (power loss)")
         ->needs(record);
+    add_text(command, "--trace", "Write the colliders' boxes of each step for 'fase pairs' (.aabt)", run.trace);
     add_json(command, run.json);
     command.footer(
         "\nExamples:\n"
         "  fase run castle --seconds 12 --record castle.faserec\n"
         "  fase run scene.glb --steps 600 --threads 4 --json\n"
-        "  fase run pile --count 500 --structure brute_force\n"
+        "  fase run pile --count 500 --structure brute_force --trace pile.aabt\n"
         "\nCtrl-C ends the run after the step in hand; what is recorded so far is kept.");
     start.on(command, [&run] { return run_scene(run); });
 }

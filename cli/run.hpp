@@ -30,6 +30,7 @@ struct RunOptions {
     std::string record;                  ///< a recording to write; empty: none
     bool record_contacts = false;        ///< with all contact points
     bool durable = false;                ///< each block of it is forced to the disk
+    std::string trace;                   ///< a trace of the colliders' boxes to write; empty: none
     bool json = false;                   ///< one JSON value on stdout instead of a table
 };
 

@@ -75,9 +75,10 @@ std::string to_json(const RunSummary& s) {
                         s.peak_contacts, s.last.awake, peak_memory_bytes(), hex(s.hash), fmt::join(warnings, ", "));
     return text + fmt::format(
                       "\"seconds\": {:.9g}, \"structure\": {}, \"threads\": {}, \"contact_points\": {}, \"asleep\": "
-                      "{}, \"world_bytes\": {}, \"frames\": {}, \"recording_bytes\": {}}}\n",
+                      "{}, \"world_bytes\": {}, \"frames\": {}, \"recording_bytes\": {}, \"trace_frames\": {}, "
+                      "\"trace_bytes\": {}}}\n",
                       s.simulated_seconds, scene::quoted(s.last.structure), s.threads, s.peak_points, s.last.asleep,
-                      s.last.bytes, s.recorded_frames, s.recorded_bytes);
+                      s.last.bytes, s.recorded_frames, s.recorded_bytes, s.traced_frames, s.traced_bytes);
 }
 
 std::string to_table(const RunSummary& s) {
@@ -109,6 +110,10 @@ std::string to_table(const RunSummary& s) {
     if (!s.recording.empty()) {
         line("recording",
              fmt::format("{}: {} frames, {}", printable(s.recording), s.recorded_frames, bytes_text(s.recorded_bytes)));
+    }
+    if (!s.trace.empty()) {
+        line("trace",
+             fmt::format("{}: {} frames, {}", printable(s.trace), s.traced_frames, bytes_text(s.traced_bytes)));
     }
     for (const std::string& warning : s.warnings) line("warning", printable(warning));
     return text;

@@ -29,6 +29,8 @@ struct RunSummary {
     std::vector<std::string> warnings;  ///< each thing once
     std::string recording;              ///< its name; empty: none
     std::uint64_t recorded_frames = 0, recorded_bytes = 0;
+    std::string trace;  ///< its name; empty: none
+    std::uint64_t traced_frames = 0, traced_bytes = 0;
 
     void add(const StepReport& report);
     /// Says in `warnings` what the steps had to cut short.
