@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fase/broad/build/cell_pairs.hpp"
+#include "fase/broad/parted_pairs.hpp"
 
 namespace fase::broad {
 
@@ -87,8 +88,11 @@ void LooseOctree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
         PairSink sink(out);
         store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
-    find_in_parts(tasks, tree_.leaves().size(), out,
-                  [&](LeafRange range, PairSink& sink) { find_pairs_near_leaves(tree_, range, false, sink); });
+    const std::size_t leaves = tree_.leaves().size();
+    find_in_parts(tasks, parts_of(leaves), out, [&](std::size_t i, std::vector<Pair>& found) {
+        PairSink sink(found);
+        find_pairs_near_leaves(tree_, leaves_of_part(leaves, i), false, sink);
+    });
 }
 
 void LooseOctree::find_awake_pairs(std::vector<Pair>& out) const {

@@ -20,7 +20,7 @@ public:
     /// What may be tuned. The pairs and hits that are reported never depend on it, only their order and the time.
     struct Settings {
         std::uint32_t capacity = 48;  ///< a leaf with more boxes is split, unless all have to stay; at least 1
-        int max_depth = 16;           ///< of a leaf; 0 to 16, the root's is 0
+        int max_depth = 15;           ///< of a leaf; 0 to 15, the root's is 0
         std::optional<Aabb> bounds;   ///< of the root cell; none: as the boxes need it, anew at each commit
     };
 

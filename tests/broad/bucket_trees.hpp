@@ -47,7 +47,7 @@ template <class S> void ends_where_boxes_coincide() {
     tree.build(points);
     const StructureStats stats = stats_of(tree);
     EXPECT_EQ(tree.broken_invariant(), "");
-    EXPECT_EQ(stats.depth, 16);
+    EXPECT_EQ(stats.depth, 15);
     EXPECT_EQ(stats.largest_leaf, 1000u);
     EXPECT_EQ(stats.entries, 1001u);
     EXPECT_LE(stats.nodes, 18u);

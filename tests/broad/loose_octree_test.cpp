@@ -76,7 +76,7 @@ TEST(LooseOctree, EndsWhereBoxesCoincide) {
     LooseOctree tree;
     expect_like_brute_force(tree, boxes);
     EXPECT_EQ(stats_of(tree).entries, boxes.size());
-    EXPECT_LE(stats_of(tree).depth, 16);
+    EXPECT_LE(stats_of(tree).depth, 15);
     EXPECT_EQ(stats_of(tree).largest_leaf, 1300u);
     EXPECT_LE(tree.nodes(), 200u);
 }

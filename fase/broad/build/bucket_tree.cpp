@@ -2,9 +2,40 @@
 #include "fase/broad/build/bucket_tree.hpp"
 
 #include "fase/broad/build/cell_pairs.hpp"
+#include "fase/broad/parted_pairs.hpp"
 
 namespace fase::broad {
 namespace {
+
+/// Three (or two) steps side by side, 16 bits each, of which the highest is free; 16 bits are left over. So all axes
+/// are compared at once.
+constexpr std::uint64_t guards = 0x8000'8000'8000;
+template <class Steps> std::uint64_t packed(const Steps& steps) {
+    std::uint64_t word = 0;
+    for (std::size_t a = 0; a < steps.size(); ++a) word |= std::uint64_t{steps[a]} << (16 * a);
+    return word;
+}
+/// The bits 16a where the a-th steps are no less than those of `limits`, which has its guards and the rest clear.
+constexpr std::uint64_t no_less(std::uint64_t steps, std::uint64_t limits) {
+    return (((steps | guards) - limits) & guards) >> 15;
+}
+
+/// The children that a box goes to; bits 2a and 2a + 1 of the index say whether its lower and its upper corner lie
+/// above the cut along the a-th axis.
+constexpr std::array<std::uint8_t, 64> children_by_sides = [] {
+    std::array<std::uint8_t, 64> children{};
+    for (std::uint32_t sides = 0; sides < children.size(); ++sides) {
+        std::uint32_t mask = 0xff;
+        if ((sides & 1) != 0) mask &= 0xaa;
+        if ((sides & 2) == 0) mask &= 0x55;
+        if ((sides & 4) != 0) mask &= 0xcc;
+        if ((sides & 8) == 0) mask &= 0x33;
+        if ((sides & 16) != 0) mask &= 0xf0;
+        if ((sides & 32) == 0) mask &= 0x0f;
+        children[sides] = static_cast<std::uint8_t>(mask);
+    }
+    return children;
+}();
 
 /// Byte k is bit k of the index.
 constexpr std::array<std::uint64_t, 256> a_byte_a_bit = [] {
@@ -25,7 +56,8 @@ template <int Dim> void BucketTree<Dim>::rebuild() {
     if (place_.size() < rows.size()) place_.resize(rows.size());
     for (std::uint32_t row = 0; row < rows.size(); ++row) {
         const Aabb& box = rows[row].box;
-        records_[row] = {this->frame_.steps_of(box.lo), this->frame_.steps_of(box.hi), row};
+        records_[row] = {packed(this->frame_.steps_of(box.lo)) | std::uint64_t{row} << 48,
+                         packed(this->frame_.steps_of(box.hi)) | std::uint64_t{row >> 16} << 48};
     }
     const auto count = static_cast<std::uint32_t>(rows.size());
     tasks_.clear();
@@ -40,10 +72,10 @@ template <int Dim> void BucketTree<Dim>::rebuild() {
 
 /// How many records go to each child; leaves in masks_ to which each one goes.
 template <int Dim> auto BucketTree<Dim>::count_children(const Task& task) -> Counts {
-    // The children on the low and on the high side of the cut along each axis.
-    constexpr std::array<std::uint32_t, 3> low{0x55, 0x33, 0x0f}, high{0xaa, 0xcc, 0xf0};
-    std::array<std::uint32_t, Dim> cut;
-    for (std::size_t a = 0; a < Dim; ++a) cut[a] = (task.path.begin(a) + task.path.end(a)) / 2;
+    Steps middle{};
+    for (std::size_t a = 0; a < Dim; ++a)
+        middle[a] = static_cast<std::uint16_t>((task.path.begin(a) + task.path.end(a)) / 2);
+    const std::uint64_t cut = packed(middle);
     const std::uint32_t count = task.end - task.begin;
     if (masks_.size() < count) masks_.resize(count);
     Counts counts{};
@@ -52,9 +84,10 @@ template <int Dim> auto BucketTree<Dim>::count_children(const Task& task) -> Cou
         std::uint64_t sums = 0;  // a byte a child
         for (std::uint32_t i = first; i < end; ++i) {
             const Record& record = records_[task.begin + i];
-            std::uint32_t mask = (1u << child_count) - 1;
-            for (std::size_t a = 0; a < Dim; ++a)
-                mask &= (record.lo[a] < cut[a] ? low[a] : 0) | (record.hi[a] >= cut[a] ? high[a] : 0);
+            const std::uint64_t sides = no_less(record.lo, cut) | no_less(record.hi, cut) << 1;
+            constexpr std::uint64_t together = 1ull << 32 | 1ull << 18 | 1ull << 4;  // bits 0, 16, 32 to 32, 34, 36
+            constexpr std::uint64_t all_sides = (1u << 2 * Dim) - 1;
+            const std::uint32_t mask = children_by_sides[(sides * together >> 32) & all_sides];
             masks_[i] = static_cast<std::uint8_t>(mask);
             sums += a_byte_a_bit[mask];
         }
@@ -112,12 +145,19 @@ template <int Dim> void BucketTree<Dim>::make_leaf(const Task& task) {
     CellTree& tree = this->tree_;
     const std::span<const Move> rows = this->store_.ordinary();
     tree.add_leaf(task.node);
+    Steps first{};
+    for (std::size_t a = 0; a < Dim; ++a) first[a] = static_cast<std::uint16_t>(task.path.begin(a));
+    const std::uint64_t begin = packed(first);
+    const auto mark_of_record = [begin](const Record& record) {
+        const std::uint64_t begins = no_less(record.lo, begin);
+        return static_cast<std::uint32_t>(begins | begins >> 15 | begins >> 30) & owned;
+    };
     Counts of_mark{};
     for (std::uint32_t i = task.begin; i < task.end; ++i) {
         const Record& record = records_[i];
-        const std::uint32_t mark = mark_of(record.lo, task.path);
+        const std::uint32_t mark = mark_of_record(record), row = record.row();
         ++of_mark[mark];
-        if (mark == owned) place_[record.row] = tree.add_owned(rows[record.row]);
+        if (mark == owned) place_[row] = tree.add_owned(rows[row]);
     }
     const std::uint32_t visitors = task.end - task.begin - of_mark[owned];
     if (visitors == 0) return;
@@ -125,8 +165,8 @@ template <int Dim> void BucketTree<Dim>::make_leaf(const Task& task) {
     Counts to{};
     for (std::uint32_t mark = 1; mark < child_count; ++mark) to[mark] = to[mark - 1] + of_mark[mark - 1];
     for (std::uint32_t i = task.begin; i < task.end; ++i) {
-        const std::uint32_t mark = mark_of(records_[i].lo, task.path);
-        if (mark != owned) row[to[mark]++] = {place_[records_[i].row], mark};  // its owner comes first in the walk
+        const std::uint32_t mark = mark_of_record(records_[i]);
+        if (mark != owned) row[to[mark]++] = {place_[records_[i].row()], mark};  // its owner comes first in the walk
     }
 }
 
@@ -141,8 +181,11 @@ template <int Dim> void BucketTree<Dim>::find_pairs(TaskRunner& tasks, std::vect
         PairSink sink(out);
         this->store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
-    find_in_parts(tasks, this->tree_.leaves().size(), out,
-                  [&](LeafRange range, PairSink& sink) { find_pairs_in_leaves(this->tree_, range, Dim, false, sink); });
+    const std::size_t leaves = this->tree_.leaves().size();
+    find_in_parts(tasks, parts_of(leaves), out, [&](std::size_t i, std::vector<Pair>& found) {
+        PairSink sink(found);
+        find_pairs_in_leaves(this->tree_, leaves_of_part(leaves, i), Dim, false, sink);
+    });
 }
 
 template <int Dim> void BucketTree<Dim>::find_awake_pairs(std::vector<Pair>& out) const {

@@ -49,8 +49,9 @@ private:
 
     /// A box in a cell that is yet to be split.
     struct Record {
-        Steps lo, hi;
-        std::uint32_t row;  // in store_.ordinary()
+        std::uint64_t lo, hi;  // steps, 16 bits each; on top of them half of row()
+        /// In store_.ordinary().
+        [[nodiscard]] std::uint32_t row() const { return static_cast<std::uint32_t>(lo >> 48 | (hi >> 48) << 16); }
     };
     /// A node that is yet to be split or to become a leaf, and its records.
     struct Task {

@@ -9,8 +9,8 @@
 
 namespace fase::broad {
 
-/// How often an axis can be halved: places are counted in 2^16 steps along it.
-inline constexpr int deepest_cell = 16;
+/// How often an axis can be halved: places are counted in 2^15 steps along it.
+inline constexpr int deepest_cell = 15;
 
 /// A cell of a tree: `depth` halvings below the root, the at[a]-th of 2^depth along the a-th halved axis.
 template <int Dim> struct CellPath {

@@ -2,7 +2,6 @@
 /// The pairs of boxes in the leaves of a tree of cells, many tests at a time.
 #include "fase/broad/build/cell_tree.hpp"
 #include "fase/broad/pair_sink.hpp"
-#include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
@@ -20,17 +19,11 @@ void find_pairs_in_leaves(const CellTree& tree, LeafRange range, int dimensions,
 /// The pairs of a box of a leaf in the range and one of the same or of a later leaf, for a tree without visitors.
 void find_pairs_near_leaves(const CellTree& tree, LeafRange range, bool awake_only, PairSink& sink);
 
-/// Calls `find(range, sink)` for parts of all the leaves, on several threads, and appends what they find in the order
-/// of the leaves.
-template <class Find>
-void find_in_parts(TaskRunner& tasks, std::size_t leaves, std::vector<Pair>& out, const Find& find) {
-    constexpr std::size_t grain = 64;
-    std::vector<std::vector<Pair>> found((leaves + grain - 1) / grain);
-    parallel_ranges(tasks, leaves, grain, [&](std::size_t begin, std::size_t end) {
-        PairSink sink(found[begin / grain]);
-        find({begin, end}, sink);
-    });
-    for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
+/// How many parts a search through that many leaves is cut into, and which leaves part i has.
+inline constexpr std::size_t leaves_a_part = 64;
+constexpr std::size_t parts_of(std::size_t leaves) { return (leaves + leaves_a_part - 1) / leaves_a_part; }
+constexpr LeafRange leaves_of_part(std::size_t leaves, std::size_t i) {
+    return {i * leaves_a_part, leaves < (i + 1) * leaves_a_part ? leaves : (i + 1) * leaves_a_part};
 }
 
 }  // namespace fase::broad
