@@ -6,7 +6,7 @@ namespace fase::broad {
 
 /// Tree of planes across the axes for sets that stand still; what it keeps and costs: PlaneTree. The planes are those
 /// that leave least surface times boxes (the better tree), or go through the middle box of the longest axis (the faster
-/// build). To move, insert or erase one box is to build all anew at commit(): O(n log n), about 1 µs a box. A query:
+/// build). To move, insert or erase one box is to build all anew at commit(): O(n log n), about 0.4 µs a box. A query:
 /// O(log n + hits) when boxes are spread.
 /// Sources: Bentley 1975, Multidimensional binary search trees used for associative searching; MacDonald and Booth
 /// 1990, Heuristics for ray tracing using space subdivision; Edelsbrunner 1980, Dynamic data structures for orthogonal

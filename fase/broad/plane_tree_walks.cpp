@@ -75,32 +75,39 @@ private:
         if constexpr (AwakeOnly) return entry_awake_[entry] == 0;
         return false;
     }
+    /// Pairs of an entry with those of a row that it overlaps; with `resting_only`, that rest. In blocks, without a
+    /// branch on the outcome of a test.
+    void test_row(const Move& mine, std::size_t first, std::size_t end, bool resting_only = false) {
+        std::array<Proxy, 64> hits;
+        while (first < end) {
+            const std::size_t stop = std::min(end, first + hits.size());
+            std::size_t count = 0;
+            for (; first < stop; ++first) {
+                const bool wanted = !resting_only || rests(first);
+                hits[count] = entries_[first].proxy;
+                count += wanted && meet(mine.box, entries_[first].box) ? 1 : 0;
+            }
+            for (std::size_t i = 0; i < count; ++i) sink_.add(mine.proxy, hits[i]);
+        }
+    }
     /// One that rests is left to those that are awake, so that a crowd of sleepers costs nothing.
     void test_leaf(const Node& leaf) {
         const std::size_t first = leaf.first, end = leaf.first + leaf.count;
         for (std::size_t i = first; i < end; ++i) {
             if (rests(i)) continue;
             const Move mine = entries_[i];
-            if constexpr (AwakeOnly)
-                for (std::size_t k = first; k < i; ++k)
-                    if (rests(k) && meet(mine.box, entries_[k].box)) sink_.add(mine.proxy, entries_[k].proxy);
-            for (std::size_t k = i + 1; k < end; ++k)
-                if (meet(mine.box, entries_[k].box)) sink_.add(mine.proxy, entries_[k].proxy);
+            if constexpr (AwakeOnly) test_row(mine, first, i, true);
+            test_row(mine, i + 1, end);
         }
     }
     void test_leaves(const Node& a, const Node& b) {
+        test_from(a, b, false);
+        if constexpr (AwakeOnly) test_from(b, a, true);
+    }
+    void test_from(const Node& a, const Node& b, bool resting_only) {
         for (std::size_t i = a.first; i < a.first + a.count; ++i) {
             const Move mine = entries_[i];
-            if (rests(i) || !meet(mine.box, b.box)) continue;
-            for (std::size_t k = b.first; k < b.first + b.count; ++k)
-                if (meet(mine.box, entries_[k].box)) sink_.add(mine.proxy, entries_[k].proxy);
-        }
-        if constexpr (!AwakeOnly) return;
-        for (std::size_t k = b.first; k < b.first + b.count; ++k) {
-            const Move mine = entries_[k];
-            if (rests(k) || !meet(mine.box, a.box)) continue;
-            for (std::size_t i = a.first; i < a.first + a.count; ++i)
-                if (rests(i) && meet(mine.box, entries_[i].box)) sink_.add(mine.proxy, entries_[i].proxy);
+            if (!rests(i) && meet(mine.box, b.box)) test_row(mine, b.first, b.first + b.count, resting_only);
         }
     }
 };
