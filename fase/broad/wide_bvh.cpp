@@ -73,7 +73,7 @@ void WideBvh::clear() {
 void WideBvh::build(std::span<const Move> boxes) {
     clear();
     for (const Move& m : boxes) insert(m.proxy, m.box);
-    commit();
+    rebuild(settings_.filled);
 }
 
 void WideBvh::commit() {

@@ -1,6 +1,8 @@
 #pragma once
 /// Axis-aligned boxes in float.
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "fase/math/pose.hpp"
@@ -42,15 +44,21 @@ constexpr Aabb grown(const Aabb& a, float margin) {
     const Vec3 m{margin, margin, margin};
     return {a.lo - m, a.hi + m};
 }
-/// Float box of a double one, rounded outward: never smaller than what it stands for.
-inline Aabb rounded_outward(Vec3d lo, Vec3d hi) {
-    const auto down = [](double v) {
-        const float f = static_cast<float>(v);
-        return f > v ? std::nextafter(f, -Aabb::infinity) : f;
+/// Float box of a double one, rounded outward: never smaller than what it stands for. Without branches, which could not
+/// be foreseen: a step of the bits is a step to the next float, away from 0 (what rounds to 0 keeps its sign).
+constexpr Aabb rounded_outward(Vec3d lo, Vec3d hi) {
+    const auto stepped = [](float f, bool outward, std::uint32_t away_when) {
+        const auto bits = std::bit_cast<std::uint32_t>(f);
+        const std::uint32_t step = outward ? 1 : 0;
+        return std::bit_cast<float>((bits >> 31) == away_when ? bits + step : bits - step);
     };
-    const auto up = [](double v) {
+    const auto down = [&](double v) {
         const float f = static_cast<float>(v);
-        return f < v ? std::nextafter(f, Aabb::infinity) : f;
+        return stepped(f, f > v, 1);
+    };
+    const auto up = [&](double v) {
+        const float f = static_cast<float>(v);
+        return stepped(f, f < v, 0);
     };
     return {{down(lo.x), down(lo.y), down(lo.z)}, {up(hi.x), up(hi.y), up(hi.z)}};
 }

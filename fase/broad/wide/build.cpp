@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "fase/broad/build/area_split.hpp"
 #include "fase/broad/local_stack.hpp"
 
 namespace fase::broad::wide {
@@ -100,7 +101,7 @@ template <class Cut> void append(std::span<const BuildItem> items, Forest& fores
 
 void append_by_area(std::span<BuildItem> items, Forest& forest) {
     append(items, forest, [items](Range range) {
-        const Split split = split_by_binned_area(items.subspan(range.first, range.count));
+        const Split split = split_by_area(items.subspan(range.first, range.count));
         const auto left = static_cast<std::uint32_t>(split.left_count);
         return std::pair(Range{range.first, left, box_cost(split.left)},
                          Range{range.first + left, range.count - left, box_cost(split.right)});

@@ -14,23 +14,24 @@ template <bool Careful> class RayTest {
 public:
     explicit RayTest(const RayMeasure& measure) : length_(measure.ray().length) {
         const Ray& ray = measure.ray();
+        const Vec3d o = ray.origin, before = to_double(measure.before()), after = to_double(measure.after());
+        // A carried box: its sums with the stored box are rounded to float, outward, in the exact test.
+        const bool thick = !(before == Vec3d{} && after == Vec3d{});
+        const double share = thick ? 0x1p-20 : 0.0, always = double(least);
+        const auto room = [&](int axis) {
+            return share * (std::abs(o[axis]) + std::abs(before[axis]) + std::abs(after[axis])) + always;
+        };
+        const Vec3d rooms{room(0), room(1), room(2)};
+        const Aabb rounded = rounded_outward(o + before - rooms, o + after + rooms);
         for (int axis = 0; axis < 3; ++axis) {
-            const double o = ray.origin[axis], before = double(measure.before()[axis]),
-                         after = double(measure.after()[axis]);
-            // A carried box: its sums with the stored box are rounded to float, outward, in the exact test.
-            const bool thick = before != 0 || after != 0;
-            const double room = thick ? 0x1p-20 * (std::abs(o) + std::abs(before) + std::abs(after)) : 0.0;
-            const double low = o + before - room - double(least), high = o + after + room + double(least);
-            const Aabb rounded = rounded_outward({low, low, low}, {high, high, high});
-            const double d = double(ray.direction[axis]);
+            const float d = ray.direction[axis];
             const bool forward = !(d < 0);
-            const float inverse = d == 0 ? std::numeric_limits<float>::infinity() : static_cast<float>(1.0 / d);
-            in_row_[axis] = forward ? axis : axis + 3;
-            out_row_[axis] = forward ? axis + 3 : axis;
-            in_from_[axis] = forward ? rounded.hi.x : rounded.lo.x;
-            out_from_[axis] = forward ? rounded.lo.x : rounded.hi.x;
-            in_inverse_[axis] = inverse;
-            out_inverse_[axis] = inverse * ray_slack;
+            in_row_[axis] = width * static_cast<std::size_t>(forward ? axis : axis + 3);
+            out_row_[axis] = width * static_cast<std::size_t>(forward ? axis + 3 : axis);
+            in_from_[axis] = forward ? rounded.hi[axis] : rounded.lo[axis];
+            out_from_[axis] = forward ? rounded.lo[axis] : rounded.hi[axis];
+            in_inverse_[axis] = d == 0 ? std::numeric_limits<float>::infinity() : 1.0f / d;
+            out_inverse_[axis] = in_inverse_[axis] * ray_slack;
         }
     }
     static bool needs_care(const Ray& ray) {
@@ -47,21 +48,13 @@ public:
     [[nodiscard]] HWY_INLINE bool within(float at) const { return at <= reach_; }
     /// Which children are met before the limit, a bit each, and where.
     HWY_INLINE std::uint32_t test(const Node& node, float* at) const {
+        const float* const planes = node.plane[0];
         std::uint32_t bits = 0;
-        for (int i = 0; i < width; i += lanes) {
+        for (std::size_t i = 0; i < width; i += lanes) {
             V near = hn::Zero(Floats()), far = splat(reach_);
-            for (int axis = 0; axis < 3; ++axis) {
-                const V in = (load(node.plane[in_row_[axis]] + i) - splat(in_from_[axis])) * splat(in_inverse_[axis]);
-                const V out =
-                    (load(node.plane[out_row_[axis]] + i) - splat(out_from_[axis])) * splat(out_inverse_[axis]);
-                if constexpr (Careful) {
-                    near = hn::IfThenElse(hn::Gt(in, near), in, near);
-                    far = hn::IfThenElse(hn::Lt(out, far), out, far);
-                } else {
-                    near = hn::Max(near, in);
-                    far = hn::Min(far, out);
-                }
-            }
+            clip(planes + i, 0, near, far);
+            clip(planes + i, 1, near, far);
+            clip(planes + i, 2, near, far);
             hn::Store(near, Floats(), at + i);
             bits |= bits_of(hn::Le(near, far)) << i;
         }
@@ -69,9 +62,21 @@ public:
     }
 
 private:
-    int in_row_[3], out_row_[3];
+    std::size_t in_row_[3], out_row_[3];  // from the first plane of a node
     float in_from_[3], out_from_[3], in_inverse_[3], out_inverse_[3];
     float length_, reach_ = 0;
+
+    HWY_INLINE void clip(const float* planes, int axis, V& near, V& far) const {
+        const V in = (load(planes + in_row_[axis]) - splat(in_from_[axis])) * splat(in_inverse_[axis]);
+        const V out = (load(planes + out_row_[axis]) - splat(out_from_[axis])) * splat(out_inverse_[axis]);
+        if constexpr (Careful) {
+            near = hn::IfThenElse(hn::Gt(in, near), in, near);
+            far = hn::IfThenElse(hn::Lt(out, far), out, far);
+        } else {
+            near = hn::Max(near, in);
+            far = hn::Min(far, out);
+        }
+    }
 };
 
 /// A point against eight boxes. Distances are squared; the limit's square is rounded up by more than their roundings.
@@ -118,21 +123,30 @@ struct Branch {
     float at;
 };
 
-/// Pushes the children of `bits`, the nearest on top.
-HWY_INLINE void push_sorted(LocalStack<Branch, 256>& open, const Node& node, std::uint32_t node_index,
-                            std::uint32_t bits, const float* at) {
+/// The nearest of the children of `bits` (some); the others are pushed, the nearest of them on top.
+HWY_INLINE Branch take_nearest(LocalStack<Branch, 256>& open, const Node& node, std::uint32_t node_index,
+                               std::uint32_t bits, const float* at) {
+    const auto branch_to = [&](std::uint32_t child) {
+        const std::uint32_t link = node.link[child];
+        return Branch{(link & leaf_bit) != 0 ? leaf_bit | place_of(node_index, child) : link, at[child]};
+    };
+    Branch nearest = branch_to(take_bit(bits));
+    if (bits == 0) return nearest;
+    Branch next = branch_to(take_bit(bits));
+    if (next.at < nearest.at) std::swap(nearest, next);
     open.make_room(width);
     const std::size_t base = open.size();
+    open.push_if(true, next);
     while (bits != 0) {
-        const std::uint32_t child = take_bit(bits);
-        const std::uint32_t link = node.is_leaf(child) ? leaf_bit | place_of(node_index, child) : node.link[child];
-        const float mine = at[child];
-        open.push_if(true, {link, mine});
+        next = branch_to(take_bit(bits));
+        if (next.at < nearest.at) std::swap(nearest, next);
+        open.push_if(true, next);
         Branch* const data = open.data();
         std::size_t k = open.size() - 1;
-        for (; k > base && data[k - 1].at < mine; --k) data[k] = data[k - 1];
-        data[k] = {link, mine};
+        for (; k > base && data[k - 1].at < next.at; --k) data[k] = data[k - 1];
+        data[k] = next;
     }
+    return nearest;
 }
 
 template <class Test, class Measure>
@@ -143,21 +157,23 @@ void search(const Forest& forest, Test test, const Measure& measure, float limit
     const Node* const nodes = forest.nodes.data();
     alignas(64) float at[width];
     while (!open.empty()) {
-        const Branch branch = open.pop();
+        Branch branch = open.pop();
         if (!test.within(branch.at)) continue;
-        if ((branch.link & leaf_bit) == 0) {
+        bool met = true;
+        while (met && (branch.link & leaf_bit) == 0) {
             const Node& node = nodes[branch.link];
             const std::uint32_t bits = test.test(node, at);
-            push_sorted(open, node, branch.link, bits, at);
-            continue;
+            met = bits != 0;
+            if (met) branch = take_nearest(open, node, branch.link, bits, at);
         }
+        if (!met) continue;
         const Place place = branch.link & ~leaf_bit;
         const Node& node = nodes[place / width];
-        const Proxy proxy = node.link[place % width] & ~leaf_bit;
+        const std::uint32_t link = node.link[place % width];
         const Aabb box = node.box(place % width);
         const float exact = measure.at(box, limit);
-        if (node.link[place % width] == none || !(exact < beyond)) continue;
-        const float wanted = visit(proxy, box, exact);
+        if (link == none || !(exact < beyond)) continue;
+        const float wanted = visit(link & ~leaf_bit, box, exact);
         if (!(wanted < limit)) continue;
         limit = wanted;
         if (limit < 0) return;
