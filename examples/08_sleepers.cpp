@@ -1,0 +1,50 @@
+// Sleepers behind a door: no pair of two that rest is looked for, and the tree knows where all rest.
+#include <cstdio>
+#include <vector>
+
+#include "fase/query/index.hpp"
+
+struct Monster {
+    float x, z;
+};
+using Level = fase::Index<Monster>;
+
+fase::Aabb box_of(const Monster& m) { return {{m.x - 0.6f, 0, m.z - 0.6f}, {m.x + 0.6f, 2, m.z + 0.6f}}; }
+
+void tell(const char* when, Level& level) {
+    int all = 0, wanted = 0;
+    level.pairs([&](Monster&, Monster&) { ++all; });
+    level.awake_pairs([&](Monster&, Monster&) { ++wanted; });
+    std::printf("%-24s %4d pairs touch, %4d of them wanted\n", when, all, wanted);
+}
+
+int main() {
+    Level level;
+    std::vector<Level::Id> sleepers;
+    for (int i = 0; i < 400; ++i) {  // a packed room: each touches its neighbours
+        const Monster m{static_cast<float>(i % 20), static_cast<float>(i / 20)};
+        sleepers.push_back(level.insert(box_of(m), m));
+        level.set_awake(sleepers.back(), false);
+    }
+    const auto player = level.insert({}, {-3, 10});
+    const auto walk_to = [&](float x) {
+        level.value(player).x = x;
+        level.move(player, box_of(level.value(player)));
+        level.commit();
+    };
+    walk_to(-3);
+    tell("the door is shut:", level);
+
+    walk_to(-1);
+    tell("the player at the door:", level);
+
+    // The door opens: those within 4 m of it wake.
+    level.overlapping(fase::query::SphereRegion({-1, 1, 10}, 4),
+                      [&](Level::Id id, Monster&) { level.set_awake(id, true); });
+    level.commit();
+    tell("those near it wake:", level);
+
+    for (const auto id : sleepers) level.set_awake(id, true);
+    level.commit();
+    tell("all awake:", level);
+}

@@ -1,0 +1,55 @@
+// A ray and a camera through the nodes of a tree: what is never opened is never tested.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "fase/broad/octree.hpp"
+#include "fase/core/random.hpp"
+#include "fase/query/index.hpp"
+
+struct Balloon {
+    fase::Vec3d at;
+    double radius;
+};
+
+/// Metres along the ray to the balloon itself; the tree only knows its box.
+float to_balloon(const fase::Ray& ray, const Balloon& b) {
+    const fase::Vec3d from = ray.origin - b.at;
+    const double along = fase::dot(from, fase::to_double(ray.direction));
+    const double rest = along * along - fase::length_squared(from) + b.radius * b.radius;
+    const double at = rest < 0 ? -1 : -along - std::sqrt(rest);
+    return at < 0 ? fase::broad::beyond : static_cast<float>(at);
+}
+
+/// Looks along -z from (50, 50, 100), half as wide as far, 1 m to 60 m: projection times view, column by column.
+constexpr std::array<float, 16> camera{
+    2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -61.0f / 59, -1, -100, -100, 6100.0f / 59 - 120.0f / 59, 100};
+
+int main() {
+    fase::Index<Balloon, fase::broad::Octree> sky;
+    fase::Random random(4);
+    for (int i = 0; i < 20'000; ++i) {
+        const fase::Vec3 at{random.between(0, 100), random.between(0, 100), random.between(0, 100)};
+        sky.insert(fase::grown({at, at}, 0.4f), {fase::to_double(at), 0.4});
+    }
+    sky.commit();
+
+    const fase::Ray arrow{{-5, 50, 50}, fase::normalized(fase::Vec3{1, 0.02f, 0.01f}), 200};
+    const auto box = sky.cast_ray(arrow);
+    int opened = 0;
+    const auto balloon = sky.cast_ray(arrow, [&](const Balloon& b, const fase::Aabb&, float, float) {
+        ++opened;
+        return to_balloon(arrow, b);
+    });
+    if (!box || !balloon) return 1;
+    std::printf("the arrow meets a box after %.3f m and a balloon after %.3f m\n", box->at, balloon->at);
+    std::printf("%d of %zu balloons were tested\n", opened, sky.size());
+
+    const auto seen = fase::frustum_of(camera);
+    if (!seen) return std::puts(seen.error().text().c_str()), 1;
+    int visible = 0;
+    sky.cull(*seen, [&](const Balloon&) { ++visible; });
+    std::printf("the camera sees %d of them\n", visible);
+    for (const auto& near : sky.nearest({50, 50, 50}, 3)) std::printf("%.3f m from the middle\n", near.at);
+}

@@ -1,0 +1,28 @@
+// One scene, every structure: the same pairs, the same hits; choose by the shape of the world and how often it changes.
+#include <cstdio>
+
+#include "fase/broad/any_structure.hpp"
+#include "fase/core/random.hpp"
+#include "fase/query/cast_ray.hpp"
+
+int main() {
+    fase::Random random(5);
+    std::vector<fase::broad::Move> boxes;  // 2000 crates on a plain of 80 m
+    for (fase::broad::Proxy p = 0; p < 2000; ++p) {
+        const fase::Vec3 at{random.between(0, 80), random.between(0, 1), random.between(0, 80)};
+        boxes.push_back({p, {at, at + fase::Vec3{1, 1, 1}}});
+    }
+    const fase::Ray ray{{-1, 0.5, 40}, {1, 0, 0}, 100};
+    std::size_t first_pairs = 0, different = 0;
+    fase::broad::for_each_structure([&]<fase::broad::Structure S>() {
+        auto structure = *fase::broad::AnyStructure::named(S::info.name);
+        structure.build(boxes);
+        std::vector<fase::broad::Pair> pairs;
+        structure.find_pairs(pairs);
+        const auto hit = fase::query::nearest_hit(structure, ray);
+        std::printf("%-17s %zu pairs, box %u after %.2f m\n", S::info.name.data(), pairs.size(), hit->proxy, hit->at);
+        if (first_pairs == 0) first_pairs = pairs.size();
+        different += pairs.size() == first_pairs ? 0 : 1;
+    });
+    return different == 0 ? 0 : 1;
+}
