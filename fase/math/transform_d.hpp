@@ -29,4 +29,11 @@ inline TransformD to_double(const LocalPose& pose) {
     return {to_matrix(normalized(to_double(pose.rotation))), to_double(pose.position)};
 }
 
+/// b seen from a, exact to double: both quaternions are normalised in it.
+inline TransformD exactly_relative(const Pose& a, const Pose& b) {
+    const Mat3d of_a = to_matrix(normalized(to_double(a.rotation)));
+    const Mat3d of_b = to_matrix(normalized(to_double(b.rotation)));
+    return {transpose(of_a) * of_b, transpose_times(of_a, b.position - a.position)};
+}
+
 }  // namespace fase

@@ -8,9 +8,8 @@ namespace fase::narrow {
 std::optional<ShapeOnShape> cast_shape(const Shape& moving, const Pose& from, Vec3 direction, float length,
                                        const Shape& target, const Pose& at) {
     const Mat3d of_target = to_matrix(normalized(to_double(at.rotation)));
-    const Mat3d of_mover = to_matrix(normalized(to_double(from.rotation)));
-    const TransformD start{transpose(of_target) * of_mover, transpose_times(of_target, from.position - at.position)};
-    const auto stop = advance(target, moving, start, transpose_times(of_target, to_double(direction)), double(length));
+    const Vec3d way = transpose_times(of_target, to_double(direction));
+    const auto stop = advance(target, moving, exactly_relative(at, from), way, double(length));
     if (!stop) return std::nullopt;
     return ShapeOnShape{stop->at, at.position + of_target * stop->on_target, to_float(of_target * stop->normal)};
 }

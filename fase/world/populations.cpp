@@ -10,6 +10,7 @@ using dynamics::no_index;
 using dynamics::Population;
 
 broad::AnyStructure& boxes_of(WorldState& state, Population population) {
+    state.query.ready.store(false, std::memory_order_relaxed);
     switch (population) {
         case Population::Static: return state.static_boxes;
         case Population::Asleep: return state.asleep_boxes;
@@ -23,12 +24,16 @@ LocalPose collider_pose(const WorldState& state, const Collider& collider) {
     return {rotate(body, collider.in_principal.position), body * collider.in_principal.rotation};
 }
 
+Pose world_pose(const WorldState& state, const Collider& collider) {
+    const LocalPose local = collider_pose(state, collider);
+    return {state.bodies.motion[collider.body].position + to_double(local.position), local.rotation};
+}
+
 Aabb reaching_box(const WorldState& state, std::uint32_t index, float seconds, float sweep) {
     const Collider& collider = state.colliders[index];
     const dynamics::BodyMotion& motion = state.bodies.motion[collider.body];
-    const LocalPose local = collider_pose(state, collider);
-    const Pose pose{motion.position + to_double(local.position), local.rotation};
-    Aabb box = grown(bounds(state.shapes[collider.shape].shape, pose), state.settings.speculative_distance);
+    Aabb box = grown(bounds(state.shapes[collider.shape].shape, world_pose(state, collider)),
+                     state.settings.speculative_distance);
     if (sweep > 0) {
         const Vec3 way = motion.linear_velocity * seconds, none;
         box.lo += min(way, none);
@@ -117,6 +122,7 @@ void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
     }
     move_indices(state.awake, state.asleep, bodies);
     move_boxes(state, bodies, Population::Awake, Population::Asleep);
+    note_sleepers(state, bodies);
     sort_out_pairs(state);
 }
 

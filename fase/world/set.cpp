@@ -168,7 +168,9 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
     dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
     traits.mass_given = mass.has_value();
     if (mass) traits.mass = *mass;
+    const LocalPose frame_before = traits.principal;
     renew_mass(*state_, body.index);
+    if (!(frame_before == traits.principal)) renew_boxes(*state_, body.index);  // moved, if by roundings only
     want_awake(*state_, body.index);
     return {};
 }

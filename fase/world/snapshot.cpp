@@ -317,6 +317,7 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         }
         for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
             boxes->commit();
+        note_sleepers(*next, next->asleep);
         for (std::uint32_t i = 0; i < next->shapes.size(); ++i)
             if (next->shapes[i].users != 0) next->shape_of_key.emplace(next->shapes[i].key, i);
         state_ = std::move(next);

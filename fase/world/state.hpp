@@ -1,7 +1,9 @@
 #pragma once
 /// Everything a world holds, as flat arrays, and the stages of its step.
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -72,6 +74,19 @@ enum ColliderChange : std::uint8_t {
     edited = 2,     ///< the user made, moved or changed it
 };
 
+/// What queries between steps know of the boxes beyond the boxes: the first query after a change brings it up to date,
+/// under the lock (world/query_boxes.hpp). No part of hash or snapshot, and no stage of the step reads it.
+struct QueryBoxes {
+    std::atomic<bool> ready = false;  ///< the sets are committed, and all that follows is current
+    std::mutex lock;
+    bool bodies_moved = true;  ///< a step moved bodies since `strays` and `awake_overhang` were found
+    /// Metres by which shapes may stick out of the boxes that stand for them in the set, on every side.
+    float asleep_overhang = 0, awake_overhang = 0;
+    /// The few awake colliders that stick out farthest, by index, with their boxes as they are: they count in no
+    /// overhang.
+    std::vector<broad::Move> strays;
+};
+
 struct WorldState {
     Settings settings;
     std::uint64_t steps = 0;
@@ -105,7 +120,9 @@ struct WorldState {
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
-    broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
+    // Mutable: the first query after edits commits them.
+    mutable broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
+    mutable QueryBoxes query;
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;
@@ -120,17 +137,21 @@ struct WorldState {
     bool stepping = false;
 };
 
-/// The broad-phase set in which a population's boxes stand.
+/// The broad-phase set in which a population's boxes stand, to be changed.
 [[nodiscard]] broad::AnyStructure& boxes_of(WorldState& state, dynamics::Population population);
 
 // Lists and populations (world/populations.cpp).
 /// The pose of a collider's shape: rotation in the world, and its place relative to the body's centre of mass.
 [[nodiscard]] LocalPose collider_pose(const WorldState& state, const Collider& collider);
+/// The place of a collider's shape in the world.
+[[nodiscard]] Pose world_pose(const WorldState& state, const Collider& collider);
 /// World box of a collider as it stands, grown by the speculative distance and by `sweep` along the body's velocity.
 [[nodiscard]] Aabb reaching_box(const WorldState& state, std::uint32_t collider, float seconds, float sweep);
 /// Puts bodies from asleep to awake or back, with their boxes and pairs. `bodies` ascending.
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies);
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies);
+/// Notes how far the colliders of these bodies, which have just come to the asleep set, stick out of their boxes there.
+void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodies);
 /// Pairs go to the list where they belong: active when a body of theirs is awake.
 void sort_out_pairs(WorldState& state);
 /// Asks that the body's island be awake before pairs are sought in the next step.

@@ -30,6 +30,8 @@ void step(WorldState& state, float seconds) {
     const StandardFloats floats;
     state.report = {};
     state.events.clear();
+    state.query.bodies_moved = true;
+    state.query.ready.store(false, std::memory_order_relaxed);
 
     timed(state, Stage::Refresh, [&] { refresh_boxes(state, seconds); });
     timed(state, Stage::Pairs, [&] { track_pairs(state); });

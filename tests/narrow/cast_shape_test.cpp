@@ -28,13 +28,8 @@ Pose moved_along(Pose pose, Vec3 direction, double by) {
     pose.position += to_double(direction) * by;
     return pose;
 }
-TransformD seen_from(const Pose& a, const Pose& b) {
-    const Mat3d of_a = to_matrix(normalized(to_double(a.rotation)));
-    return {transpose(of_a) * to_matrix(normalized(to_double(b.rotation))),
-            transpose_times(of_a, b.position - a.position)};
-}
 double gap(const Shape& target, const Pose& at, const Shape& mover, const Pose& there) {
-    return narrow::signed_distance(target, mover, seen_from(at, there)).distance;
+    return narrow::signed_distance(target, mover, exactly_relative(at, there)).distance;
 }
 
 /// A case that often meets: two shapes some metres apart and a direction roughly from one to the other.

@@ -1,0 +1,628 @@
+// Queries on worlds as they stand, against a loop over all colliders.
+#include "fase/world/query.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <thread>
+
+#include "fase/broad/registry.hpp"
+#include "fase/geometry/bounds.hpp"
+#include "fase/narrow/cast_ray.hpp"
+#include "fase/narrow/cast_shape.hpp"
+#include "fase/narrow/distance.hpp"
+#include "fase/world/state.hpp"
+#include "tests/world/worlds.hpp"
+
+namespace fase {
+namespace {
+
+using namespace test;
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+std::vector<std::string> structures() {
+    std::vector<std::string> names;
+    broad::for_each_structure([&]<broad::Structure S>() { names.emplace_back(S::info.name); });
+    return names;
+}
+
+Vec3 in_cube(Random& random, float reach) {
+    return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
+}
+Vec3 direction(Random& random) {
+    Vec3 v;
+    do v = in_cube(random, 1);
+    while (length_squared(v) < 0.01f || length_squared(v) > 1);
+    return to_float(normalized(to_double(v)));
+}
+Shape any_shape(Random& random) {
+    const float r = random.between(0.1f, 0.6f);
+    switch (random.below(4)) {
+        case 0: return Box{{r, 0.5f * r, 1.5f * r}};
+        case 1: return Sphere{r};
+        case 2: return Capsule{0.5f * r, r};
+        default: return Cylinder{r, 0.7f * r};
+    }
+}
+
+/// Every living collider, by index, as the naive loops see it.
+struct Seen {
+    Found id;
+    const Shape* shape = nullptr;
+    Pose pose;
+};
+std::vector<Seen> all_of(const World& world) {
+    std::vector<Seen> out;
+    const WorldState& s = world.state();
+    for (std::uint32_t c = 0; c < s.collider_ids.size(); ++c) {
+        const auto id = s.collider_ids.id_at(c);
+        if (!id || s.colliders[c].sensor) continue;
+        out.push_back({{*s.body_ids.id_at(s.colliders[c].body), *id},
+                       &s.shapes[s.colliders[c].shape].shape,
+                       world_pose(s, s.colliders[c])});
+    }
+    return out;
+}
+
+Ray random_ray(Random& random) {
+    return {to_double(in_cube(random, 8)), direction(random), random.below(2) == 0 ? inf : random.between(0, 10)};
+}
+
+template <class T> T opened(Result<T> result) {
+    EXPECT_TRUE(result) << (result ? "" : result.error().text());
+    return result ? *result : T{};
+}
+void opened(const Result<void>& result) { EXPECT_TRUE(result) << (result ? "" : result.error().text()); }
+
+void expect_rays_right(const World& world, Random& random, int count) {
+    const std::vector<Seen> all = all_of(world);
+    for (int i = 0; i < count; ++i) {
+        const Ray ray = random_ray(random);
+        std::vector<std::pair<double, std::size_t>> hits;
+        for (std::size_t c = 0; c < all.size(); ++c)
+            if (const auto hit = narrow::cast_ray(*all[c].shape, all[c].pose, ray)) hits.push_back({hit->at, c});
+        std::sort(hits.begin(), hits.end());
+        const auto found = opened(cast_ray(world, ray));
+        ASSERT_EQ(found.has_value(), !hits.empty());
+        EXPECT_EQ(opened(any_hit(world, ray)), !hits.empty());
+        std::vector<RayHit> every;
+        opened(cast_ray_all(world, ray, {}, every));
+        ASSERT_EQ(every.size(), hits.size());
+        for (std::size_t k = 0; k < hits.size(); ++k) {
+            EXPECT_EQ((Found{every[k].body, every[k].collider}), all[hits[k].second].id);
+            EXPECT_EQ(every[k].at, static_cast<float>(hits[k].first));
+        }
+        if (!found) continue;
+        EXPECT_EQ(*found, every[0]);
+        const auto exact = narrow::cast_ray(*all[hits[0].second].shape, all[hits[0].second].pose, ray);
+        EXPECT_EQ(found->normal, exact->normal);
+        EXPECT_EQ(found->point, point_at(ray, exact->at));
+    }
+}
+
+void expect_casts_right(const World& world, Random& random, int count) {
+    const std::vector<Seen> all = all_of(world);
+    for (int i = 0; i < count; ++i) {
+        const Shape shape = any_shape(random);
+        const Pose pose{to_double(in_cube(random, 8)), random_rotation(random)};
+        const Vec3 way = direction(random);
+        const float length = random.below(2) == 0 ? inf : random.between(0, 10);
+        double least = inf;
+        for (const Seen& c : all)
+            if (const auto hit = narrow::cast_shape(shape, pose, way, length, *c.shape, c.pose))
+                least = std::min(least, hit->at);
+        const auto found = opened(cast_shape(world, shape, pose, way, length));
+        ASSERT_EQ(found.has_value(), least < double(inf));
+        if (!found) continue;
+        EXPECT_LE(double(found->at), least + 1e-6);  // where it is first to touch the tolerance decides
+        EXPECT_NEAR(double(found->at), least, 1e-5 + 1e-6 * least);
+        EXPECT_TRUE(world.contains(found->body) && world.contains(found->collider));
+    }
+}
+
+void expect_places_right(const World& world, Random& random, int count) {
+    const std::vector<Seen> all = all_of(world);
+    for (int i = 0; i < count; ++i) {
+        const Pose pose{to_double(in_cube(random, 6)), random_rotation(random)};
+        const Shape shape = any_shape(random);
+        const auto expect = [&](const std::vector<Found>& got, const auto& meets) {
+            std::vector<Found> wanted;
+            for (const Seen& c : all)
+                if (meets(c)) wanted.push_back(c.id);
+            EXPECT_EQ(got, wanted);
+        };
+        std::vector<Found> got;
+        opened(overlapping(world, shape, pose, {}, got));
+        expect(got, [&](const Seen& c) { return narrow::overlaps(*c.shape, shape, exactly_relative(c.pose, pose)); });
+        got.clear();
+        opened(colliders_at(world, pose.position, {}, got));
+        expect(got, [&](const Seen& c) {
+            return narrow::overlaps(*c.shape, Sphere{0}, exactly_relative(c.pose, {pose.position, {}}));
+        });
+        got.clear();
+        const Vec3 half{random.between(0.1f, 4), random.between(0.1f, 4), random.between(0.1f, 4)};
+        const Vec3 centre = to_float(pose.position);
+        opened(overlapping(world, Aabb{centre - half, centre + half}, {}, got));
+        const Vec3d lo = to_double(centre - half), hi = to_double(centre + half);
+        expect(got, [&](const Seen& c) {
+            return narrow::overlaps(*c.shape, Box{to_float((hi - lo) * 0.5)},
+                                    exactly_relative(c.pose, {(lo + hi) * 0.5, {}}));
+        });
+    }
+}
+
+void expect_nearest_right(const World& world, Random& random, int count) {
+    const std::vector<Seen> all = all_of(world);
+    for (int i = 0; i < count; ++i) {
+        const Vec3d point = to_double(in_cube(random, 8));
+        const float radius = random.below(2) == 0 ? inf : random.between(0, 6);
+        const std::size_t k = 1 + random.below(6);
+        std::vector<std::pair<double, std::size_t>> wanted;
+        for (std::size_t c = 0; c < all.size(); ++c) {
+            const double d = std::max(
+                0.0,
+                narrow::signed_distance(*all[c].shape, Sphere{0}, exactly_relative(all[c].pose, {point, {}})).distance);
+            if (d <= double(radius)) wanted.push_back({d, c});
+        }
+        std::sort(wanted.begin(), wanted.end());
+        if (wanted.size() > k) wanted.resize(k);
+        std::vector<NearHit> got;
+        opened(nearest(world, point, k, radius, {}, got));
+        ASSERT_EQ(got.size(), wanted.size());
+        for (std::size_t j = 0; j < got.size(); ++j) {
+            EXPECT_EQ(got[j].collider, all[wanted[j].second].id.collider);
+            EXPECT_EQ(got[j].distance, static_cast<float>(wanted[j].first));
+            EXPECT_NEAR(length(got[j].point - point), wanted[j].first, 1e-6);
+        }
+    }
+}
+
+Frustum box_frustum(Vec3d centre, Quat turned, Vec3d half) {
+    Frustum frustum;
+    for (int i = 0; i < 6; ++i) {
+        Vec3d axis;
+        axis[i / 2] = i % 2 == 0 ? -1 : 1;
+        const Vec3d normal = rotate(normalized(to_double(turned)), axis);
+        frustum.sides[static_cast<std::size_t>(i)] = {normal, dot(normal, centre) + half[i / 2]};
+    }
+    return frustum;
+}
+
+void expect_views_right(const World& world, Random& random, int count) {
+    const std::vector<Seen> all = all_of(world);
+    for (int i = 0; i < count; ++i) {
+        const Vec3d centre = to_double(in_cube(random, 4));
+        const Quat turned = random_rotation(random);
+        const Vec3d half{2 + 3 * random.unit(), 2 + 3 * random.unit(), 2 + 3 * random.unit()};
+        const Frustum frustum = box_frustum(centre, turned, half);
+        std::vector<Found> seen, partly;
+        opened(seen_by(world, frustum, {}, seen, &partly));
+        // A half-space in the place of a plane tells which side a shape is on.
+        std::vector<Found> wanted, wanted_partly;
+        for (const Seen& c : all) {
+            bool outside = !overlaps(bounds(frustum), bounds(*c.shape, c.pose)), inside = true;
+            for (int k = 0; k < 6; ++k) {
+                const Frustum::Side& side = frustum.sides[static_cast<std::size_t>(k)];
+                const Pose wall{side.normal * side.offset,
+                                to_float(to_quat(Mat3d{any_perpendicular(side.normal), side.normal,
+                                                       cross(any_perpendicular(side.normal), side.normal)}))};
+                const Pose back{wall.position, wall.rotation * Quat{1, 0, 0, 0}};
+                if (std::holds_alternative<HalfSpace>(*c.shape)) {
+                    inside = false;
+                    continue;
+                }
+                outside = outside ||
+                          narrow::signed_distance(HalfSpace{}, *c.shape, exactly_relative(wall, c.pose)).distance > 0;
+                inside = inside &&
+                         narrow::signed_distance(HalfSpace{}, *c.shape, exactly_relative(back, c.pose)).distance > 0;
+            }
+            if (!outside) wanted.push_back(c.id);
+            if (!outside && !inside) wanted_partly.push_back(c.id);
+        }
+        EXPECT_EQ(seen, wanted);
+        EXPECT_EQ(partly, wanted_partly);
+    }
+}
+
+/// Every kind of query, some times, against a loop; and none of them changes the world.
+void expect_right(const World& world, std::uint64_t seed, int count = 12) {
+    const std::uint64_t before = world.hash();
+    Random random(seed);
+    expect_rays_right(world, random, 3 * count);
+    expect_casts_right(world, random, count);
+    expect_places_right(world, random, count);
+    expect_nearest_right(world, random, count);
+    expect_views_right(world, random, count / 2);
+    EXPECT_EQ(world.hash(), before);
+}
+
+/// Bodies of all kinds and populations between -5 and 5, two colliders on some, some of them sensors.
+std::vector<BodyId> fill(World& world, int count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<BodyId> bodies{add_ground(world)};
+    for (int i = 0; i < count; ++i) {
+        BodyDef def;
+        def.kind = i % 5 == 0 ? BodyKind::Static : i % 5 == 1 ? BodyKind::Kinematic : BodyKind::Dynamic;
+        def.position = to_double(in_cube(random, 5));
+        def.rotation = random_rotation(random);
+        if (def.kind != BodyKind::Static && i % 3 == 0) def.linear_velocity = in_cube(random, 20);
+        if (def.kind == BodyKind::Dynamic) def.awake = i % 4 != 0;
+        bodies.push_back(add(world, def, any_shape(random), {.sensor = i % 11 == 0}));
+        if (i % 7 == 0) {
+            EXPECT_TRUE(world.add_collider(bodies.back(), any_shape(random),
+                                           {.pose = {in_cube(random, 1), random_rotation(random)}}));
+        }
+    }
+    return bodies;
+}
+
+class EveryStructure : public testing::TestWithParam<std::string> {
+protected:
+    [[nodiscard]] World make(const Settings& settings = {}) const {
+        return make_world(settings, {.structure = GetParam()});
+    }
+};
+
+TEST_P(EveryStructure, answers_as_a_loop_over_all_colliders_before_and_between_steps) {
+    World world = make();
+    fill(world, 60, 1);
+    expect_right(world, 1);
+    for (int i = 0; i < 25; ++i) {
+        run(world, 1.0 / 60);
+        expect_right(world, static_cast<std::uint64_t>(i), 4);
+    }
+}
+
+TEST_P(EveryStructure, finds_bodies_that_left_their_boxes_in_the_last_step) {
+    Settings tight;
+    tight.speculative_distance = 0;
+    tight.box_margin = 0;
+    tight.gravity = {0, -300, 0};
+    World world = make(tight);
+    fill(world, 100, 2);
+    float overhang = 0;
+    for (int i = 0; i < 12; ++i) {
+        run(world, 1.0 / 60);
+        expect_right(world, static_cast<std::uint64_t>(100 + i), 6);
+        overhang = std::max(overhang, world.state().query.awake_overhang);
+    }
+    EXPECT_GT(overhang, 0) << "too few left their boxes to test that";
+}
+
+TEST_P(EveryStructure, finds_bodies_that_fell_asleep_in_full_motion) {
+    Settings sleepy;
+    sleepy.speculative_distance = 0;
+    sleepy.box_margin = 0;
+    sleepy.sleep_linear_speed = sleepy.sleep_angular_speed = 1000;
+    sleepy.sleep_distance = 1000;
+    sleepy.time_to_sleep = 0.04f;
+    World world = make(sleepy);
+    fill(world, 60, 3);
+    for (int i = 0; i < 8; ++i) {
+        run(world, 1.0 / 60);
+        expect_right(world, static_cast<std::uint64_t>(200 + i), 6);
+    }
+    EXPECT_FALSE(world.state().asleep.empty());
+    EXPECT_GT(world.state().query.asleep_overhang, 0);
+    // A world made from its bytes measures anew.
+    World copy = make();
+    ASSERT_TRUE(copy.restore(world.snapshot()));
+    expect_right(copy, 300);
+}
+
+TEST_P(EveryStructure, answers_right_after_every_edit) {
+    World world = make();
+    std::vector<BodyId> bodies = fill(world, 40, 4);
+    run(world, 0.2);
+    Random random(5);
+    for (int i = 0; i < 60; ++i) {
+        const std::size_t at = 1 + random.below(bodies.size() - 1);
+        const BodyId body = bodies[at];
+        switch (i % 10) {
+            case 0: {
+                bodies.push_back(add(world, {.position = to_double(in_cube(random, 5))}, any_shape(random)));
+                break;
+            }
+            case 1: opened(world.set_pose(body, {to_double(in_cube(random, 5)), random_rotation(random)})); break;
+            case 2: {
+                opened(world.remove_body(body));
+                bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(at));
+                break;
+            }
+            case 3: {
+                static_cast<void>(world.add_collider(body, any_shape(random),
+                                                     {.pose = {in_cube(random, 1), random_rotation(random)}}));
+                break;
+            }
+            case 4: {
+                const auto colliders = world.colliders_of(body);
+                if (!colliders.empty()) opened(world.remove_collider(colliders[0]));
+                break;
+            }
+            case 5: opened(world.set_kind(body, static_cast<BodyKind>(random.below(3)))); break;
+            case 6: opened(world.set_mass(body, MassProperties{1, in_cube(random, 50), Mat3::identity()})); break;
+            case 7: {  // in the place of one that is gone
+                opened(world.remove_body(body));
+                bodies[at] = add(world, {.kind = BodyKind::Static, .position = to_double(in_cube(random, 5))},
+                                 any_shape(random));
+                break;
+            }
+            case 8: run(world, 1.0 / 60); break;
+            default: {
+                const auto bytes = world.snapshot();
+                run(world, 0.1);
+                ASSERT_TRUE(world.restore(bytes));
+                break;
+            }
+        }
+        expect_right(world, static_cast<std::uint64_t>(i), 4);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST_P(EveryStructure, follows_the_fastest_bodies_through_edits) {
+    Settings tight;
+    tight.box_margin = 0;
+    World world = make(tight);
+    std::vector<BodyId> fast;
+    for (int i = 0; i < 10; ++i)
+        fast.push_back(add(world, {.position = {0.7 * i - 3.5, 0, 0}, .linear_velocity = {0, 0, 1}}, Sphere{0.3f}));
+    run(world, 1.0 / 60);
+    for (const BodyId body : fast) ASSERT_TRUE(world.apply_force(body, {0, 4e5f, 0}));
+    run(world, 1.0 / 60);
+    expect_right(world, 1);
+    ASSERT_FALSE(world.state().query.strays.empty());
+    ASSERT_TRUE(world.set_pose(fast[0], {{1, 1, 1}, {}}));
+    ASSERT_TRUE(world.remove_body(fast[1]));
+    add(world, {.position = {-1, -1, -1}}, Box{});
+    ASSERT_TRUE(world.set_kind(fast[2], BodyKind::Static));
+    expect_right(world, 2);
+}
+
+TEST_P(EveryStructure, asked_or_not_goes_on_to_the_same_bits) {
+    World asked = make(), silent = make_world();
+    for (World* world : {&asked, &silent}) add_pile(*world, 60);
+    for (int i = 0; i < 90; ++i) {
+        expect_right(asked, static_cast<std::uint64_t>(i), i % 10 == 0 ? 4 : 1);
+        if (i == 45)
+            for (World* world : {&asked, &silent}) add(*world, {.position = {0, 9, 0}}, Sphere{0.4f});
+        run(asked, 1.0 / 60);
+        run(silent, 1.0 / 60);
+    }
+    EXPECT_EQ(asked.hash(), silent.hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(Query, EveryStructure, testing::ValuesIn(structures()),
+                         [](const auto& structure) { return structure.param; });
+
+TEST(Query, ties_go_to_the_smaller_index) {
+    for (const std::string& name : structures()) {
+        World world = make_world({}, {.structure = name});
+        std::vector<BodyId> bodies;
+        for (int i = 0; i < 20; ++i)
+            bodies.push_back(
+                add(world, {.kind = i % 2 == 0 ? BodyKind::Dynamic : BodyKind::Static, .position = {0, 1, 0}}, Box{}));
+        const auto hit = opened(cast_ray(world, {{0, 5, 0}, {0, -1, 0}}));
+        ASSERT_TRUE(hit);
+        EXPECT_EQ(hit->body, bodies[0]);
+        EXPECT_EQ(hit->at, 3.5f);
+        std::vector<NearHit> near;
+        opened(nearest(world, {0, 5, 0}, 3, inf, {}, near));
+        ASSERT_EQ(near.size(), 3u);
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(near[i].body, bodies[i]) << name;
+    }
+}
+
+TEST(Query, hits_a_millimetre_apart_are_in_order_from_far_away) {
+    World world = make_world();
+    const BodyId behind = add(world, {.kind = BodyKind::Static, .position = {0, 0, 0}}, Box{{1, 1, 1}});
+    const BodyId before = add(world, {.kind = BodyKind::Static, .position = {0, 0.0001, 0}}, Box{{1, 1, 1}});
+    const auto hit = opened(cast_ray(world, {{0, 1e5, 0}, {0, -1, 0}}));
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, before);
+    EXPECT_NE(hit->body, behind);
+    EXPECT_NEAR(hit->point.y, 1.0001, 1e-9);
+}
+
+TEST(Query, sees_what_its_filter_lets_it_see) {
+    World world = make_world();
+    const BodyId ghost = add(world, {.kind = BodyKind::Static, .position = {0, 5, 0}}, Sphere{0.5f},
+                             {.filter = {.category = 0, .mask = 0}});
+    const BodyId sensor = add(world, {.kind = BodyKind::Static, .position = {0, 4, 0}}, Sphere{0.4f}, {.sensor = true});
+    const BodyId red = add(world, {.kind = BodyKind::Static, .position = {0, 3, 0}}, Sphere{0.4f},
+                           {.filter = {.category = 2, .mask = 4}});
+    const BodyId blue =
+        add(world, {.kind = BodyKind::Static, .position = {0, 2, 0}}, Sphere{0.4f}, {.filter = {.category = 8}});
+    const Ray down{{0, 9, 0}, {0, -1, 0}};
+    const auto first = [&](const QueryFilter& filter) {
+        const auto hit = opened(cast_ray(world, down, filter));
+        return hit ? hit->body : BodyId{};
+    };
+    EXPECT_EQ(first({}), ghost);
+    EXPECT_EQ(first({.ignored = ghost}), red);
+    EXPECT_EQ(first({.sensors = true, .ignored = ghost}), sensor);
+    EXPECT_EQ(first({.mask = 2 | 8}), red);
+    EXPECT_EQ(first({.mask = 8}), blue);
+    EXPECT_EQ(first({.category = 4}), red);
+    EXPECT_EQ(first({.category = 1}), blue);
+    EXPECT_EQ(first({.accepts = [&](BodyId body, ColliderId) { return body == blue; }}), blue);
+    EXPECT_EQ(first({.accepts = [](BodyId, ColliderId) { return false; }}), BodyId{});
+    // An id that is stale ignores nobody, not even who has its place now.
+    ASSERT_TRUE(world.remove_body(ghost));
+    const BodyId successor = add(world, {.kind = BodyKind::Static, .position = {0, 5, 0}}, Sphere{0.5f});
+    ASSERT_EQ(successor.index, ghost.index);
+    EXPECT_EQ(first({.ignored = ghost}), successor);
+    std::vector<Found> found;
+    opened(overlapping(world, Aabb{{-1, 0, -1}, {1, 9, 1}}, {.mask = 2}, found));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].body, red);
+    std::vector<NearHit> near;
+    opened(nearest(world, {0, 9, 0}, 9, inf, {.mask = 8}, near));
+    ASSERT_EQ(near.size(), 1u);
+    EXPECT_EQ(near[0].body, blue);
+}
+
+TEST(Query, boxes_may_be_flat_and_endless) {
+    World world = make_world();
+    const BodyId ground = add_ground(world);
+    const BodyId box = add(world, {.kind = BodyKind::Static, .position = {0, 3, 0}}, Box{{1, 1, 1}});
+    const auto bodies_in = [&](const Aabb& region) {
+        std::vector<Found> found;
+        opened(overlapping(world, region, {}, found));
+        std::vector<BodyId> bodies;
+        for (const Found& f : found) bodies.push_back(f.body);
+        return bodies;
+    };
+    EXPECT_EQ(bodies_in(Aabb::everything()), (std::vector<BodyId>{ground, box}));
+    EXPECT_EQ(bodies_in({{-inf, 2.5f, -inf}, {inf, 2.5f, inf}}), std::vector<BodyId>{box});
+    EXPECT_EQ(bodies_in({{1, 4, 1}, {1, 4, 1}}), std::vector<BodyId>{box});  // its corner
+    EXPECT_EQ(bodies_in({{-9, 0, -9}, {9, 1.9f, 9}}), std::vector<BodyId>{ground});
+    EXPECT_TRUE(bodies_in({{-9, 0.1f, -9}, {9, 1.9f, 9}}).empty());
+}
+
+TEST(Query, batches_on_many_threads_equal_single_rays) {
+    std::vector<std::optional<RayHit>> answers[2];
+    Random random(9);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 2000; ++i) rays.push_back(random_ray(random));
+    for (const int threads : {1, 4}) {
+        World world = make_world({}, {.threads = threads});
+        fill(world, 100, 6);
+        run(world, 0.1);
+        auto& out = answers[threads == 1 ? 0 : 1];
+        out.push_back(std::nullopt);  // what is in the buffer stays
+        opened(cast_rays(world, rays, {}, out));
+        ASSERT_EQ(out.size(), rays.size() + 1);
+        for (std::size_t i = 0; i < rays.size(); i += 7) {
+            const auto single = opened(cast_ray(world, rays[i]));
+            ASSERT_EQ(single.has_value(), out[i + 1].has_value());
+            if (single) {
+                EXPECT_EQ(*single, *out[i + 1]);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < answers[0].size(); ++i) {
+        ASSERT_EQ(answers[0][i].has_value(), answers[1][i].has_value());
+        if (answers[0][i]) {
+            EXPECT_EQ(answers[0][i]->point, answers[1][i]->point);
+        }
+    }
+}
+
+TEST(Query, threads_may_ask_at_once_right_after_edits) {
+    for (const std::string& name : structures()) {
+        World world = make_world({}, {.structure = name});
+        const std::vector<BodyId> bodies = fill(world, 200, 7);
+        run(world, 0.1);
+        for (int round = 0; round < 5; ++round) {
+            ASSERT_TRUE(world.set_pose(bodies[static_cast<std::size_t>(3 + round)], {{0, 2, 0}, {}}));
+            std::atomic<int> wrong = 0;
+            std::vector<std::vector<Vec3d>> points(4);
+            std::vector<std::thread> threads;
+            for (std::size_t t = 0; t < 4; ++t)
+                threads.emplace_back([&, t] {
+                    Random random(11);
+                    for (int i = 0; i < 50; ++i) {
+                        const auto hit = cast_ray(world, random_ray(random));
+                        if (!hit) ++wrong;
+                        points[t].push_back(hit && *hit ? (*hit)->point : Vec3d{});
+                    }
+                });
+            for (std::thread& thread : threads) thread.join();
+            EXPECT_EQ(wrong, 0);
+            for (std::size_t t = 1; t < 4; ++t) EXPECT_EQ(points[t], points[0]) << name;
+        }
+    }
+}
+
+TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
+    World world = make_world();
+    add_ground(world);
+    add(world, {.position = {0, 2, 0}}, Box{});
+    const std::uint64_t before = world.hash();
+    const auto refused = [&](const auto& result, const std::string& field) {
+        ASSERT_FALSE(result) << field;
+        EXPECT_EQ(result.status(), Status::BadArgument) << field;
+        EXPECT_NE(result.error().text().find(field), std::string::npos) << result.error().text();
+        EXPECT_EQ(world.hash(), before);
+    };
+    std::vector<RayHit> hits;
+    std::vector<std::optional<RayHit>> answers;
+    std::vector<Found> found;
+    std::vector<NearHit> near;
+    const std::vector<std::pair<Ray, std::string>> bad_rays{
+        {{{nan, 0, 0}}, "ray.origin"},          {{{0, 2e7, 0}}, "ray.origin"},
+        {{{0, double(inf), 0}}, "ray.origin"},  {{{}, {0, 0, 0}}, "ray.direction"},
+        {{{}, {0, nan, 1}}, "ray.direction"},   {{{}, {0, 2, 0}}, "ray.direction"},
+        {{{}, {0, 1.01f, 0}}, "ray.direction"}, {{{}, {0, 1, 0}, -1}, "ray.length"},
+        {{{}, {0, 1, 0}, nan}, "ray.length"},
+    };
+    for (const auto& [ray, field] : bad_rays) {
+        refused(cast_ray(world, ray), field);
+        refused(any_hit(world, ray), field);
+        refused(cast_ray_all(world, ray, {}, hits), field);
+        const std::vector<Ray> rays{{{}, {0, 1, 0}}, ray};
+        refused(cast_rays(world, rays, {}, answers), "rays[1]." + field.substr(4));
+    }
+    const Pose here{{0, 1, 0}, {}};
+    refused(cast_shape(world, Sphere{0}, here, {0, 1, 0}, 1), "radius");
+    refused(cast_shape(world, ConvexHull{}, here, {0, 1, 0}, 1), "hull");
+    refused(cast_shape(world, Sphere{}, {{nan, 0, 0}, {}}, {0, 1, 0}, 1), "pose.position");
+    refused(cast_shape(world, Sphere{}, {{}, {0, 0, 0, 0}}, {0, 1, 0}, 1), "pose.rotation");
+    refused(cast_shape(world, Sphere{}, here, {0, 1.1f, 0}, 1), "direction");
+    refused(cast_shape(world, Sphere{}, here, {0, 1, 0}, -1), "length");
+    refused(overlapping(world, Box{{1, nan, 1}}, here, {}, found), "half");
+    refused(overlapping(world, Sphere{}, {{0, 0, nan}, {}}, {}, found), "pose.position");
+    refused(overlapping(world, Aabb{}, {}, found), "box");
+    refused(overlapping(world, Aabb{{0, 0, nan}, {1, 1, 1}}, {}, found), "box");
+    refused(colliders_at(world, {0, nan, 0}, {}, found), "point");
+    refused(nearest(world, {0, nan, 0}, 1, 1, {}, near), "point");
+    refused(nearest(world, {}, 0, 1, {}, near), "k");
+    refused(nearest(world, {}, 1, -1, {}, near), "radius");
+    refused(nearest(world, {}, 1, nan, {}, near), "radius");
+    refused(seen_by(world, Frustum{}, {}, found), "frustum");
+    Frustum frustum = box_frustum({}, {}, {1, 1, 1});
+    frustum.sides[3].offset = nan;
+    refused(seen_by(world, frustum, {}, found), "sides[3]");
+    frustum = box_frustum({}, {}, {1, 1, 1});
+    frustum.sides[2].normal *= 2;
+    refused(seen_by(world, frustum, {}, found), "sides[2].normal");
+    frustum = box_frustum({}, {}, {1, 1, 1});
+    for (Frustum::Side& side : frustum.sides) side = {-side.normal, -side.offset};
+    refused(seen_by(world, frustum, {}, found), "frustum");
+    EXPECT_TRUE(hits.empty() && answers.empty() && found.empty() && near.empty());
+}
+
+TEST(Query, from_inside_a_step_is_refused) {
+    struct Nosy final : TaskRunner {
+        const World* world = nullptr;
+        Status seen = Status::Ok;
+        void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
+            if (world != nullptr) seen = cast_ray(*world, {{0, 9, 0}, {0, -1, 0}}).status();
+            for (std::size_t i = 0; i < count; ++i) chunk(i);
+        }
+        [[nodiscard]] int threads() const override { return 2; }
+    } nosy;
+    World world = make_world({}, {.tasks = &nosy});
+    add_pile(world, 200);
+    nosy.world = &world;
+    run(world, 0.1);
+    EXPECT_EQ(nosy.seen, Status::Busy);
+}
+
+TEST(Query, of_an_empty_world_finds_nothing) {
+    const World world = make_world();
+    EXPECT_FALSE(opened(cast_ray(world, {{0, 9, 0}, {0, -1, 0}})));
+    EXPECT_FALSE(opened(any_hit(world, {{0, 9, 0}, {0, -1, 0}})));
+    EXPECT_FALSE(opened(cast_shape(world, Sphere{}, {}, {0, 1, 0}, inf)));
+    std::vector<Found> found;
+    std::vector<NearHit> near;
+    opened(overlapping(world, Aabb::everything(), {}, found));
+    opened(nearest(world, {}, 5, inf, {}, near));
+    EXPECT_TRUE(found.empty() && near.empty());
+}
+
+}  // namespace
+}  // namespace fase
