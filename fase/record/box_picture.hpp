@@ -8,7 +8,7 @@
 
 namespace fase::record {
 
-/// From where a picture is seen; each has its own colour for the kinds of boxes.
+/// From where a picture is seen.
 enum class Seen : std::uint8_t {
     FromAbove,  ///< plane xz: x to the right, z downward
     FromFront,  ///< plane xy: x to the right, y upward
