@@ -170,6 +170,31 @@ void sweep_across_wide(const ColumnsView& mine, std::size_t begin, std::size_t e
     hits.move_to(out);
 }
 
+void scan_ranges_wide(const ColumnsView& boxes, const std::uint32_t* marks, std::span<const ScanRange> ranges,
+                      std::vector<Pair>& out) {
+    const FloatTag d;
+    const IndexTag di;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto all_marks = hn::Set(di, 7u);
+    HitBlock<chunk> hits;
+    for (const ScanRange& range : ranges) {
+        for (std::size_t i = range.first; i < range.end_of_askers; ++i) {
+            const Spread box(boxes, i);
+            const auto mine = hn::Set(di, marks[i]);
+            for (std::size_t k = i + 1; k < range.end; k += lanes) {
+                const auto marked = hn::Eq(hn::Or(hn::LoadU(di, marks + k), mine), all_marks);
+                auto hit = hn::And(hn::And(box.meets(boxes, 0, k), box.meets(boxes, 1, k)), box.meets(boxes, 2, k));
+                hit = hn::And(hit, hn::RebindMask(d, marked));
+                if (range.end - k < lanes) hit = hn::And(hit, hn::FirstN(d, range.end - k));
+                if (hn::AllFalse(d, hit)) continue;
+                hits.add(hn::Set(di, boxes.proxies[i]), boxes.proxies + k, hit);
+                if (hits.is_full()) hits.move_to(out);
+            }
+        }
+    }
+    hits.move_to(out);
+}
+
 std::size_t scan_touching_wide(const ColumnsView& boxes, std::size_t begin, std::size_t end, const Aabb& region,
                                std::uint32_t* hits) {
     const FloatTag d;

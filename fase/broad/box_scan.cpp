@@ -58,6 +58,7 @@ namespace fase::broad {
 HWY_EXPORT(scan_behind_wide);
 HWY_EXPORT(sweep_behind_wide);
 HWY_EXPORT(sweep_across_wide);
+HWY_EXPORT(scan_ranges_wide);
 HWY_EXPORT(scan_touching_wide);
 
 void scan_behind(const ColumnsView& boxes, std::size_t begin, std::size_t end, std::vector<Pair>& out) {
@@ -69,6 +70,10 @@ void sweep_behind(const ColumnsView& boxes, std::size_t begin, std::size_t end, 
 void sweep_across(const ColumnsView& mine, std::size_t begin, std::size_t end, const ColumnsView& theirs, Ties ties,
                   std::vector<Pair>& out) {
     HWY_DYNAMIC_DISPATCH(sweep_across_wide)(mine, begin, end, theirs, ties, out);
+}
+void scan_ranges(const ColumnsView& boxes, const std::uint32_t* marks, std::span<const ScanRange> ranges,
+                 std::vector<Pair>& out) {
+    HWY_DYNAMIC_DISPATCH(scan_ranges_wide)(boxes, marks, ranges, out);
 }
 std::size_t scan_touching(const ColumnsView& boxes, std::size_t begin, std::size_t end, const Aabb& box,
                           std::uint32_t* hits) {

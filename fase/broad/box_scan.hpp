@@ -21,6 +21,16 @@ enum class Ties : std::uint8_t { Mine, Theirs };
 void sweep_across(const ColumnsView& mine, std::size_t begin, std::size_t end, const ColumnsView& theirs, Ties ties,
                   std::vector<Pair>& out);
 
+/// Boxes first..end-1, of which those before `end_of_askers` look for pairs.
+struct ScanRange {
+    std::uint32_t first = 0, end_of_askers = 0, end = 0;
+};
+
+/// Appends, for each range, the pairs of its askers with those of the range that stand behind them, but only those of
+/// which the marks together make 7. There are as many marks as boxes, and BoxColumns::padding more.
+void scan_ranges(const ColumnsView& boxes, const std::uint32_t* marks, std::span<const ScanRange> ranges,
+                 std::vector<Pair>& out);
+
 /// Writes the places of the boxes at begin..end-1 that overlap `box` (x, y, z in the order of the view's axes) to
 /// `hits`, in order, and returns how many. `hits` has room for end - begin + BoxColumns::padding places.
 std::size_t scan_touching(const ColumnsView& boxes, std::size_t begin, std::size_t end, const Aabb& box,

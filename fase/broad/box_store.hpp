@@ -79,6 +79,8 @@ public:
 
     /// Were boxes inserted, moved or erased since the last call? For commit().
     [[nodiscard]] bool take_changed() { return std::exchange(changed_, false); }
+    /// Is there anything for commit() to do?
+    [[nodiscard]] bool has_changes() const { return changed_ || awake_changed_; }
     /// Did set_awake() change anything since the last call?
     [[nodiscard]] bool take_awake_changed() { return std::exchange(awake_changed_, false); }
 

@@ -9,6 +9,7 @@
 #include "fase/broad/quadtree.hpp"
 #include "fase/broad/row_grid.hpp"
 #include "fase/broad/sweep_and_prune.hpp"
+#include "fase/broad/uniform_grid.hpp"
 #include "fase/broad/wide_bvh.hpp"
 
 namespace fase::broad {
@@ -19,6 +20,7 @@ template <Structure... S> struct StructureList {};
 using AllStructures = StructureList<  //
     BruteForce,                       //
     SweepAndPrune,                    //
+    UniformGrid,                      //
     RowGrid,                          //
     Quadtree,                         //
     Octree,                           //

@@ -1,0 +1,146 @@
+/// How large the cells are made, and how boxes enter them.
+#include "fase/broad/uniform_grid.hpp"
+
+#include <algorithm>
+
+namespace fase::broad {
+namespace {
+
+double longest_side(const Aabb& box) {
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, double(box.hi[axis]) - box.lo[axis]);
+    return longest;
+}
+
+}  // namespace
+
+/// From a sample of at most 512 boxes, so that a few that are huge or far away do not count: cells as large as most
+/// boxes and somewhat more, larger where there is so much room that most cells would hold less than two.
+CellFrame UniformGrid::fitting_frame() const {
+    constexpr std::size_t most = 512;
+    const std::span<const Move> boxes = store_.ordinary();
+    if (boxes.empty()) return {};
+    const std::size_t count = std::min(most, boxes.size());
+    std::array<double, most> sides;
+    std::array<std::array<double, most>, 3> middles;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t begin = i * boxes.size() / count, end = (i + 1) * boxes.size() / count;
+        const Aabb& box = boxes[begin + mix_bits(i) % (end - begin)].box;
+        sides[i] = longest_side(box);
+        for (int axis = 0; axis < 3; ++axis)
+            middles[static_cast<std::size_t>(axis)][i] = 0.5 * (double(box.lo[axis]) + box.hi[axis]);
+    }
+    std::sort(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(count));
+    CellFrame frame;
+    std::array<double, 3> room;
+    double widest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        std::sort(middles[k].begin(), middles[k].begin() + static_cast<std::ptrdiff_t>(count));
+        room[k] = middles[k][count - 1 - count / 10] - middles[k][count / 10];
+        widest = std::max(widest, room[k]);
+        frame.origin[static_cast<int>(k)] = middles[k][count / 2];
+    }
+    double side = std::max(typical_sides * sides[3 * count / 4], widest * 0x1p-20);
+    const auto cells = [&] {
+        return std::max(1.0, room[0] / side) * std::max(1.0, room[1] / side) * std::max(1.0, room[2] / side);
+    };
+    if (side > 0)
+        while (cells() > std::max(1.0, 0.5 * static_cast<double>(boxes.size()))) side *= 1.125;
+    if (settings_.cell > 0) side = settings_.cell;
+    frame.side = side > 0 ? std::clamp(side, 1e-30, 1e18) : 1;
+    frame.inverse = 1 / frame.side;
+    return frame;
+}
+
+void UniformGrid::commit() {
+    const bool changed = store_.take_changed(), awake_changed = store_.take_awake_changed();
+    if (!changed && !awake_changed) return;
+    CellFrame frame = fitting_frame();
+    for (Level& level : levels_) {
+        level = {.frame = frame,
+                 .used = {{CellFrame::far, CellFrame::far, CellFrame::far},
+                          {-CellFrame::far, -CellFrame::far, -CellFrame::far}}};
+        frame.side *= ratio;
+        frame.inverse = 1 / frame.side;
+    }
+    level_count_ = 1;
+    table_.clear();
+    large_.clear();
+    entering_.clear();
+    cells_.clear();
+    level_of_.resize(store_.ordinary().size());
+    enter_boxes(true);
+    if (store_.resting() != 0) enter_boxes(false);
+    fill_cells();
+}
+
+void UniformGrid::enter_boxes(bool awake) {
+    const auto count = static_cast<std::uint32_t>(store_.ordinary().size());
+    for (std::uint32_t place = 0; place < count; ++place) {
+        if (store_.resting() != 0 && store_.is_awake(store_.ordinary()[place].proxy) != awake) continue;
+        enter(place);
+    }
+    if (!awake) return;
+    for (ScanRange& cell : cells_) cell.end_of_askers = cell.end;  // so far: how many
+}
+
+void UniformGrid::enter(std::uint32_t place) {
+    const Move& m = store_.ordinary()[place];
+    const double size = longest_side(m.box);
+    std::size_t l = 0;
+    while (l < most_levels && size > levels_[l].frame.side) ++l;
+    level_of_[place] = static_cast<std::uint8_t>(l);
+    if (l == most_levels) {
+        large_.push_back(m);
+        return;
+    }
+    level_count_ = std::max(level_count_, l + 1);
+    Level& level = levels_[l];
+    ++level.boxes;
+    const CellRange range = level.frame.range(m.box);
+    for (std::size_t k = 0; k < 3; ++k) {
+        level.used.lo[k] = std::min(level.used.lo[k], range.lo[k]);
+        level.used.hi[k] = std::max(level.used.hi[k], range.hi[k]);
+    }
+    for_each_cell(range, [&](const CellPlace& at) {
+        const std::uint32_t number = table_.enter({at, static_cast<std::int32_t>(l)});
+        if (number == cells_.size()) {
+            cells_.push_back({});
+            ++level.cells;
+        }
+        ++cells_[number].end;  // so far: how many
+        entering_.push_back({number, place, all_marks & ~later_axes(range, at)});
+        return true;
+    });
+}
+
+void UniformGrid::fill_cells() {
+    std::uint32_t sum = 0;
+    for (ScanRange& cell : cells_) {
+        cell.first = sum;
+        cell.end_of_askers += sum;
+        sum += std::exchange(cell.end, sum);
+    }
+    entries_.resize(entering_.size());
+    marks_.resize(entering_.size() + BoxColumns::padding);
+    homes_.assign(cells_.size(), Aabb{});
+    for (const Entry& entry : entering_) {
+        const Move& m = store_.ordinary()[entry.place];
+        const std::uint32_t at = cells_[entry.cell].end++;
+        entries_.put(at, m.proxy, m.box);
+        marks_[at] = entry.marks;
+        if (entry.marks == all_marks) homes_[entry.cell] = merge(homes_[entry.cell], m.box);
+    }
+}
+
+std::size_t UniformGrid::bytes() const {
+    return sizeof(*this) + store_.bytes() + table_.bytes() + cells_.capacity() * sizeof(ScanRange) +
+           homes_.capacity() * sizeof(Aabb) + entries_.bytes() + marks_.capacity() * sizeof(std::uint32_t) +
+           level_of_.capacity() + large_.capacity() * sizeof(Move) + entering_.capacity() * sizeof(Entry);
+}
+
+void UniformGrid::cells(std::vector<DrawnCell>& out) const {
+    for (std::uint32_t i = 0; i < table_.size(); ++i) out.push_back({cell_box(i), depth(i)});
+}
+
+}  // namespace fase::broad
