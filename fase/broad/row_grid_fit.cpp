@@ -100,12 +100,13 @@ double spacing_of(const Sample& sample, double count, float side) {
 }
 
 /// Gives the level its cells: of that edge, or of a larger one when there would be more than `most`.
-void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double most) {
+void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double x_share,
+            double most) {
     std::array<double, 3> counts{};
     for (;; edge *= 1.25) {
         for (std::size_t k = 0; k < 3; ++k) {
             const auto a = static_cast<std::size_t>(axis[k]);
-            counts[a] = std::floor(double{sample.ranges[a].length} / edge) + 1;
+            counts[a] = std::floor(double{sample.ranges[a].length} / (k == 0 ? edge / x_share : edge)) + 1;
             if (k > 0 && counts[a] <= 2) counts[a] = 1;
         }
         if (counts[0] * counts[1] * counts[2] <= most) break;
@@ -113,7 +114,8 @@ void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axi
     for (std::size_t a = 0; a < 3; ++a) {
         level.origin[a] = sample.ranges[a].from;
         level.last[a] = static_cast<float>(counts[a] - 1);
-        level.per_cell[a] = counts[a] > 1 ? static_cast<float>(1 / edge) : 0;
+        level.per_cell[a] =
+            counts[a] > 1 ? static_cast<float>((static_cast<int>(a) == axis[0] ? x_share : 1) / edge) : 0;
     }
     const auto at = [&](int k) { return static_cast<std::size_t>(axis[static_cast<std::size_t>(k)]); };
     level.stride[at(0)] = 1;
@@ -145,7 +147,8 @@ RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
     const bool sparse = spacing > 2 * most_sides;
     const bool by_list = settings.rows == RowGridSettings::Rows::List ||
                          (settings.rows == RowGridSettings::Rows::Chosen && sparse && sample.spread_share < 0.3f);
-    double cell = std::max(std::min(most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
+    double cell =
+        std::max(std::min(settings.side_share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
     if (settings.cell > 0) cell = settings.cell;
     if (!(cell > 1e-30)) cell = 1;
 
@@ -167,7 +170,7 @@ RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
             const double most = std::min(double{settings.cells_a_box} * count + 64, 0x1p22);
             // Room for the roundings of cell(): 2^-22 of a cell for each of some thousand rows.
             const double edge = std::max(limit, spacing_of(sample, count, static_cast<float>(limit))) * (1 + 0x1p-9);
-            divide(level, sample, fit.axis, edge, most);
+            divide(level, sample, fit.axis, edge, settings.x_share, most);
         }
         fit.levels.push_back(level);
     }

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fase/broad/row_grid_compress.hpp"
 #include "fase/broad/row_grid_kernels.hpp"
 #include "fase/math/wide-inl.hpp"
 

@@ -9,26 +9,28 @@
 
 namespace fase::broad::row_grid {
 
-/// Collects pairs in a block of its own, with room for a vector of them beyond its end, and appends full blocks to
-/// `out`; the rest goes there when it dies.
+/// Grows the caller's vector by a block at a time and lets loops write pairs straight into it; cuts off what was not
+/// needed when it dies.
 class PairBlock {
 public:
-    explicit PairBlock(std::vector<Pair>& out) : out_(out) {}
+    explicit PairBlock(std::vector<Pair>& out) : out_(out), at(out.data() + out.size()), end(at) {}
     PairBlock(const PairBlock&) = delete;
     PairBlock& operator=(const PairBlock&) = delete;
-    ~PairBlock() { flush(at); }
-
-    Pair* at = pairs_.data();                                      ///< where the next pair goes
-    Pair* const full = pairs_.data() + pairs_.size() - row_slack;  ///< beyond it, flush() comes first
-    /// Hands over all up to `end`; returns where the next pair goes.
-    Pair* flush(const Pair* end) {
-        out_.insert(out_.end(), static_cast<const Pair*>(pairs_.data()), end);
-        return at = pairs_.data();
-    }
+    ~PairBlock() { out_.resize(static_cast<std::size_t>(at - out_.data())); }
 
 private:
     std::vector<Pair>& out_;
-    std::array<Pair, 1024 + row_slack> pairs_;
+
+public:
+    Pair* at;   ///< where the next pair goes
+    Pair* end;  ///< what may be written ends here
+    /// Moves `at` and `end` on, to where all pairs before `written` are kept and `wanted` more have room.
+    [[gnu::noinline]] void make_room(const Pair* written, std::size_t wanted) {
+        const auto count = static_cast<std::size_t>(written - out_.data());
+        out_.resize(count + 1024 + wanted);
+        at = out_.data() + count;
+        end = out_.data() + out_.size();
+    }
 };
 
 /// Who asks and which proxies are left out: the asker's own, and smaller ones that `is_asker` marks.

@@ -8,6 +8,34 @@ using Words = hn::Vec<WordTag>;
 constexpr std::size_t width = hn::MaxLanes(FloatTag());
 static_assert(width <= 16);
 
+/// The marked lanes, moved to the front, and how many they are.
+struct Front {
+    Words words;
+    std::size_t count;
+
+    HWY_INLINE Front(Words all, hn::Mask<FloatTag> mask) {
+        const FloatTag d;
+        const WordTag dw;
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4  // Highway 1.0 copies its table to the stack at each call
+        std::uint8_t bits = 0;
+        hn::StoreMaskBits(d, mask, &bits);
+        count = static_cast<std::size_t>(std::popcount(bits));
+        if constexpr (width == 8) {
+            const hn::Rebind<std::uint8_t, WordTag> bytes;
+            const auto lanes = hn::PromoteTo(dw, hn::LoadU(bytes, front_of_eight[bits].data()));
+            words = hn::TableLookupLanes(all, hn::IndicesFromVec(dw, lanes));
+        } else {
+            const hn::Repartition<std::uint8_t, WordTag> bytes;
+            const auto order = hn::Load(bytes, front_bytes_of_four[bits].data());
+            words = hn::BitCast(dw, hn::TableLookupBytes(hn::BitCast(bytes, all), order));
+        }
+#else
+        count = hn::CountTrue(d, mask);
+        words = hn::Compress(all, hn::RebindMask(dw, mask));
+#endif
+    }
+};
+
 /// Where the records of a range lie against a box, by the order of their rows along one axis. What follows from the
 /// order is not tested: a record of a later row begins behind where the box begins.
 enum class Side { Unknown, Later, Earlier };
@@ -55,64 +83,67 @@ struct Asker {
         hi_z = hn::Set(d, hi[axis[2]]);
         proxy = hn::Set(WordTag(), m.proxy);
     }
+    /// What is in memory stands to the right of each comparison, where x86 can read it in the same instruction.
     template <Side y, Side z> HWY_INLINE hn::Mask<FloatTag> overlaps(const Columns& c, std::size_t j) const {
         const FloatTag d;
-        auto hit = hn::And(hn::Le(hn::LoadU(d, c.lo_x + j), hi_x), hn::Ge(hn::LoadU(d, c.hi_x + j), lo_x));
-        if constexpr (y != Side::Earlier) hit = hn::And(hit, hn::Le(hn::LoadU(d, c.lo_y + j), hi_y));
-        if constexpr (y != Side::Later) hit = hn::And(hit, hn::Ge(hn::LoadU(d, c.hi_y + j), lo_y));
-        if constexpr (z != Side::Earlier) hit = hn::And(hit, hn::Le(hn::LoadU(d, c.lo_z + j), hi_z));
-        if constexpr (z != Side::Later) hit = hn::And(hit, hn::Ge(hn::LoadU(d, c.hi_z + j), lo_z));
-        return hit;
+        auto begins_before = hn::Ge(hi_x, hn::LoadU(d, c.lo_x + j));
+        auto ends_before = hn::Gt(lo_x, hn::LoadU(d, c.hi_x + j));
+        if constexpr (y != Side::Earlier)
+            begins_before = hn::And(begins_before, hn::Ge(hi_y, hn::LoadU(d, c.lo_y + j)));
+        if constexpr (y != Side::Later) ends_before = hn::Or(ends_before, hn::Gt(lo_y, hn::LoadU(d, c.hi_y + j)));
+        if constexpr (z != Side::Earlier)
+            begins_before = hn::And(begins_before, hn::Ge(hi_z, hn::LoadU(d, c.lo_z + j)));
+        if constexpr (z != Side::Later) ends_before = hn::Or(ends_before, hn::Gt(lo_z, hn::LoadU(d, c.hi_z + j)));
+        return hn::AndNot(ends_before, begins_before);
     }
 };
 
-/// Writes pairs, smaller proxy first, without a branch on how many there are.
+/// Writes pairs, smaller proxy first, without a branch on how many there are. make_room() comes first: a call in a loop
+/// over records would drive all vectors out of their registers.
 class Writer {
 public:
-    explicit HWY_INLINE Writer(PairBlock& block) : block_(block), at_(block.at), full_(block.full) {}
+    explicit HWY_INLINE Writer(PairBlock& block) : block_(block), at_(block.at), end_(block.end) {}
     HWY_INLINE ~Writer() { block_.at = at_; }
 
-    HWY_INLINE void add(Words asker, const Proxy* others, hn::Mask<FloatTag> hit) {
-        const WordTag d;
-        if (HWY_UNLIKELY(at_ > full_)) at_ = block_.flush(at_);
-        const Words kept = hn::Compress(hn::LoadU(d, others), hn::RebindMask(d, hit));
-        const Words a = hn::Min(kept, asker), b = hn::Max(kept, asker);
-        const std::size_t count = hn::CountTrue(FloatTag(), hit);
-        auto* to = reinterpret_cast<std::uint32_t*>(at_);
-        store(a, b, count, to);
-        at_ += count;
+    /// For what `ranges` calls of add_range() find in `records` records.
+    HWY_INLINE void make_room(std::size_t records, std::size_t ranges) {
+        const std::size_t wanted = records + ranges * width;
+        if (HWY_LIKELY(static_cast<std::size_t>(end_ - at_) >= wanted)) return;
+        block_.make_room(at_, wanted);
+        at_ = block_.at;
+        end_ = block_.end;
     }
-    /// Where pairs are written next: what has been written since an earlier answer can be looked at, unless flushes()
-    /// has changed.
+    HWY_INLINE void add(Words asker, const Proxy* others, hn::Mask<FloatTag> hit) {
+        const Front found(hn::LoadU(WordTag(), others), hit);
+        store(found.words, asker, found.count, reinterpret_cast<std::uint32_t*>(at_));
+        at_ += found.count;
+    }
+    /// Where the next pair goes. What has been added since an earlier answer can be looked at, and taken back, unless
+    /// make_room() came between.
     [[nodiscard]] HWY_INLINE Pair* at() const { return at_; }
     HWY_INLINE void set_at(Pair* at) { at_ = at; }
-    /// Makes room for `count` vectors of pairs.
-    HWY_INLINE void make_room() {
-        if (HWY_UNLIKELY(at_ > full_)) at_ = block_.flush(at_);
-    }
 
 private:
     PairBlock& block_;
     Pair* at_;
-    Pair* full_;
+    Pair* end_;
 
+    /// Lane by lane: smaller, larger, smaller, larger … A full vector more than `count` asks for may be written.
 #if HWY_TARGET == HWY_SCALAR
-    static HWY_INLINE void store(Words a, Words b, std::size_t, std::uint32_t* to) {
-        hn::StoreU(a, WordTag(), to);
-        hn::StoreU(b, WordTag(), to + 1);
+    static HWY_INLINE void store(Words p, Words q, std::size_t, std::uint32_t* to) {
+        hn::StoreU(hn::Min(p, q), WordTag(), to);
+        hn::StoreU(hn::Max(p, q), WordTag(), to + 1);
     }
 #else
-    /// Lane by lane: a, b, a, b … A full vector more than `count` asks for may be written.
-    static HWY_INLINE void store(Words a, Words b, std::size_t count, std::uint32_t* to) {
+    static HWY_INLINE void store(Words p, Words q, std::size_t count, std::uint32_t* to) {
         const WordTag d;
         if constexpr (width == 16) {
-            hn::StoreU(zipped(hn::LowerHalf(a), hn::LowerHalf(b)), d, to);
-            if (HWY_UNLIKELY(count > width / 2)) {
-                const hn::Half<WordTag> half;
-                hn::StoreU(zipped(hn::UpperHalf(half, a), hn::UpperHalf(half, b)), d, to + width);
-            }
+            const hn::Half<WordTag> half;
+            hn::StoreU(ordered(hn::LowerHalf(half, p), q), d, to);
+            if (HWY_UNLIKELY(count > width / 2)) hn::StoreU(ordered(hn::UpperHalf(half, p), q), d, to + width);
             return;
         }
+        const Words a = hn::Min(p, q), b = hn::Max(p, q);
         const auto low = hn::InterleaveLower(d, a, b), high = hn::InterleaveUpper(d, a, b);
         if constexpr (width == 8) {
             hn::StoreU(hn::ConcatLowerLower(d, high, low), d, to);
@@ -122,9 +153,11 @@ private:
             hn::StoreU(high, d, to + width);
         }
     }
-    template <class V> static HWY_INLINE Words zipped(V a, V b) {
-        const hn::Repartition<std::uint64_t, WordTag> wide;
-        return hn::BitCast(WordTag(), hn::Or(hn::PromoteTo(wide, a), hn::ShiftLeft<32>(hn::PromoteTo(wide, b))));
+    /// Of both words in one order and in the other, the larger has the larger one above.
+    template <class V> static HWY_INLINE Words ordered(V p, Words q) {
+        const hn::Repartition<std::uint64_t, WordTag> d;
+        const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::BitCast(d, q)));
+        return hn::BitCast(WordTag(), hn::Max(one, hn::RotateRight<32>(one)));
     }
 #endif
 };
@@ -135,26 +168,21 @@ HWY_INLINE hn::Mask<FloatTag> first_lanes(std::size_t count) {
 
 /// All records of begin <= j < end that overlap.
 template <Side y, Side z>
-HWY_INLINE void test_range(const Asker& asker, const Columns& c, std::size_t begin, std::size_t end, Writer& out) {
+HWY_INLINE void add_range(const Asker& asker, const Columns& c, std::size_t begin, std::size_t end, Writer& out) {
     for (std::size_t j = begin; j < end; j += width)
         out.add(asker.proxy, c.proxies + j, hn::And(asker.overlaps<y, z>(c, j), first_lanes(end - j)));
 }
 
+struct Range {
+    std::uint32_t begin, end;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+};
 /// The same for ranges that are seldom longer than a vector: the first one is tested in any case.
 template <Side y, Side z>
-HWY_INLINE void test_short_range(const Asker& asker, const Columns& c, std::size_t begin, std::size_t end,
-                                 Writer& out) {
-    const std::size_t count = end - begin;
-    out.add(asker.proxy, c.proxies + begin, hn::And(asker.overlaps<y, z>(c, begin), first_lanes(count)));
-    if (HWY_UNLIKELY(count > width)) test_range<y, z>(asker, c, begin + width, end, out);
-}
-
-/// Records of a row in order of x, from `begin` on, as long as they begin before the asker ends.
-template <Side y, Side z>
-HWY_INLINE void sweep(const Asker& asker, float hi_x, const Columns& c, std::size_t begin, std::size_t end,
-                      Writer& out) {
-    for (std::size_t j = begin; j < end && c.lo_x[j] <= hi_x; j += width)
-        out.add(asker.proxy, c.proxies + j, hn::And(asker.overlaps<y, z>(c, j), first_lanes(end - j)));
+HWY_INLINE void add_short_range(const Asker& asker, const Columns& c, Range range, Writer& out) {
+    out.add(asker.proxy, c.proxies + range.begin,
+            hn::And(asker.overlaps<y, z>(c, range.begin), first_lanes(range.size())));
+    if (HWY_UNLIKELY(range.size() > width)) add_range<y, z>(asker, c, range.begin + width, range.end, out);
 }
 
 /// Calls test(begin, end) for ranges of the level's records that hold all that overlap the box.
@@ -201,7 +229,8 @@ HWY_INLINE void for_ranges(const RowView& set, const RowLevel& level, const floa
 
 /// Each of the records against all levels below theirs.
 inline void ask_lower_levels(const RowView& set, std::size_t level_index, const Columns& c, std::size_t begin,
-                             std::size_t end, Writer& out) {
+                             std::size_t end, PairBlock& block) {
+    Writer out(block);
     for (std::size_t i = begin; i < end; ++i) {
         const Asker asker(c, i);
         const float lo[3] = {set.lo[0][i], set.lo[1][i], set.lo[2][i]},
@@ -210,7 +239,9 @@ inline void ask_lower_levels(const RowView& set, std::size_t level_index, const 
             const RowLevel& level = set.levels[k];
             if (level.count == 0) continue;
             for_ranges(set, level, lo, hi, c, [&](std::size_t from, std::size_t to) {
-                test_range<Side::Unknown, Side::Unknown>(asker, c, from, to, out);
+                if (from >= to) return;
+                out.make_room(to - from, 1);
+                add_range<Side::Unknown, Side::Unknown>(asker, c, from, to, out);
             });
         }
     }
@@ -261,9 +292,9 @@ inline void sort_out(const RowView& set, const RowLevel& level, const RowPart& p
         const auto valid = first_lanes(part.end - i);
         const auto record = hn::Iota(dw, i);
         const auto put = [&](std::size_t kind, hn::Mask<FloatTag> mask) {
-            hn::StoreU(hn::Compress(record, hn::RebindMask(dw, mask)), dw,
-                       kinds.records[kind].data() + kinds.counts[kind]);
-            kinds.counts[kind] += hn::CountTrue(d, mask);
+            const Front found(record, mask);
+            hn::StoreU(found.words, dw, kinds.records[kind].data() + kinds.counts[kind]);
+            kinds.counts[kind] += found.count;
         };
         const auto only_z = hn::AndNot(reaches_y, reaches_z), only_y = hn::AndNot(reaches_z, reaches_y);
         put(0, hn::AndNot(hn::Or(reaches_y, reaches_z), valid));
@@ -276,26 +307,36 @@ inline void sort_out(const RowView& set, const RowLevel& level, const RowPart& p
 template <bool reaches_y, bool reaches_z>
 HWY_INLINE void test_kind(const RowPart& part, const Columns& c, const Kinds& kinds, Writer& out) {
     constexpr std::size_t kind = (reaches_y ? 2 : 0) + (reaches_z ? 1 : 0);
+    const bool has_z0 = part.has_z0;
     for (std::size_t k = 0; k < kinds.counts[kind]; ++k) {
         const std::uint32_t i = kinds.records[kind][k], from = kinds.from[i - part.begin],
                             to = kinds.to[i - part.begin];
-        const Asker asker(c, i);
-        test_short_range<Side::Unknown, Side::Unknown>(asker, c, i + 1, part.own[to], out);
-        if constexpr (reaches_z)
-            test_short_range<Side::Unknown, Side::Later>(asker, c, part.z1[from], part.z1[to], out);
+        const Range own{i + 1, part.own[to]};
+        Range z1{}, y1z0{}, y1{}, y1z1{};
+        if constexpr (reaches_z) z1 = {part.z1[from], part.z1[to]};
         if constexpr (reaches_y) {
-            if (part.has_z0)
-                test_short_range<Side::Later, Side::Earlier>(asker, c, part.y1z0[from], part.y1z0[to], out);
-            test_short_range<Side::Later, Side::Unknown>(asker, c, part.y1[from], part.y1[to], out);
+            if (has_z0) y1z0 = {part.y1z0[from], part.y1z0[to]};
+            y1 = {part.y1[from], part.y1[to]};
         }
-        if constexpr (reaches_y && reaches_z)
-            test_short_range<Side::Later, Side::Later>(asker, c, part.y1z1[from], part.y1z1[to], out);
+        if constexpr (reaches_y && reaches_z) y1z1 = {part.y1z1[from], part.y1z1[to]};
+        out.make_room(own.size() + z1.size() + y1z0.size() + y1.size() + y1z1.size(), 5);
+
+        const Asker asker(c, i);
+        add_short_range<Side::Unknown, Side::Unknown>(asker, c, own, out);
+        if constexpr (reaches_z) add_short_range<Side::Unknown, Side::Later>(asker, c, z1, out);
+        if constexpr (reaches_y) {
+            if (has_z0) add_short_range<Side::Later, Side::Earlier>(asker, c, y1z0, out);
+            add_short_range<Side::Later, Side::Unknown>(asker, c, y1, out);
+        }
+        if constexpr (reaches_y && reaches_z) add_short_range<Side::Later, Side::Later>(asker, c, y1z1, out);
     }
 }
 
 /// The records from `begin` to `end` of a level with a table against later ones of the level.
 inline void find_table_pairs(const RowView& set, const RowLevel& level, std::size_t begin, std::size_t end,
-                             const Columns& c, Writer& out) {
+                             const Columns& columns, PairBlock& block) {
+    const Columns c = columns;  // of its own: nothing that is written can be it
+    Writer out(block);
     const auto at = [](int a) { return static_cast<std::size_t>(a); };
     const std::uint32_t length = level.cells(set.axis[0]), rows_y = level.cells(set.axis[1]),
                         rows_z = level.cells(set.axis[2]);
@@ -334,6 +375,17 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
     }
 }
 
+/// Box i against the records of a row in order of x, from `begin` on, as long as they begin before it ends.
+template <Side y, Side z>
+HWY_INLINE void sweep(const Columns& c, std::size_t i, std::size_t begin, std::size_t end, Writer& out) {
+    const float hi_x = c.hi_x[i];
+    std::size_t stop = begin;
+    while (stop < end && c.lo_x[stop] <= hi_x) stop = std::min(stop + width, end);
+    if (begin == stop) return;
+    out.make_room(stop - begin, 1);
+    add_range<y, z>(Asker(c, i), c, begin, stop, out);
+}
+
 /// The records from `begin` to `end` of a row against those of a later one, both in order of x.
 template <Side y, Side z>
 void sweep_row(const RowLevel& level, int axis, const Columns& c, std::size_t begin, std::size_t end, std::size_t other,
@@ -343,13 +395,14 @@ void sweep_row(const RowLevel& level, int axis, const Columns& c, std::size_t be
         static_cast<std::size_t>(std::lower_bound(c.lo_x + other, c.lo_x + other_end, c.lo_x[begin] - reach) - c.lo_x);
     for (std::size_t i = begin; i < end; ++i) {
         while (from < other_end && c.lo_x[from] < c.lo_x[i] - reach) ++from;
-        sweep<y, z>(Asker(c, i), c.hi_x[i], c, from, other_end, out);
+        sweep<y, z>(c, i, from, other_end, out);
     }
 }
 
 /// As find_table_pairs(), for a level whose rows stand in a list.
 inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::size_t begin, std::size_t end,
-                              const Columns& c, Writer& out) {
+                              const Columns& c, PairBlock& block) {
+    Writer out(block);
     const ListedRow* const rows_end = set.rows.data() + level.first_row + level.row_count;
     const ListedRow* row = std::upper_bound(set.rows.data() + level.first_row, rows_end, begin,
                                             [](std::size_t v, const ListedRow& r) { return v < r.first; }) -
@@ -358,8 +411,7 @@ inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::si
     for (; row < rows_end && row->first < end; ++row) {
         const std::size_t from = std::max<std::size_t>(begin, row->first),
                           to = std::min<std::size_t>(end, row[1].first);
-        for (std::size_t i = from; i < to; ++i)
-            sweep<Side::Unknown, Side::Unknown>(Asker(c, i), c.hi_x[i], c, i + 1, row[1].first, out);
+        for (std::size_t i = from; i < to; ++i) sweep<Side::Unknown, Side::Unknown>(c, i, i + 1, row[1].first, out);
         const auto against = [&]<Side y, Side z>(const ListedRow& other) {
             sweep_row<y, z>(level, set.axis[0], c, from, to, other.first, (&other)[1].first, out);
         };
@@ -380,28 +432,33 @@ inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::si
 
 void find_own_pairs_wide(const RowView& set, std::size_t begin, std::size_t end, PairBlock& block) {
     const Columns c(set);
-    Writer out(block);
     for (std::size_t k = 0; k < set.levels.size(); ++k) {
         const RowLevel& level = set.levels[k];
         const std::size_t from = std::max<std::size_t>(begin, level.first),
                           to = std::min<std::size_t>(end, level.first + level.count);
         if (from >= to) continue;
         if (level.listed) {
-            find_listed_pairs(set, level, from, to, c, out);
+            find_listed_pairs(set, level, from, to, c, block);
         } else {
-            find_table_pairs(set, level, from, to, c, out);
+            find_table_pairs(set, level, from, to, c, block);
         }
-        if (k > 0) ask_lower_levels(set, k, c, from, to, out);
+        if (k > 0) ask_lower_levels(set, k, c, from, to, block);
     }
+}
+
+inline bool has_nan(const Aabb& box) {
+    const bool lo = (box.lo.x != box.lo.x) | (box.lo.y != box.lo.y) | (box.lo.z != box.lo.z);
+    return lo | (box.hi.x != box.hi.x) | (box.hi.y != box.hi.y) | (box.hi.z != box.hi.z);
 }
 
 void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& block) {
     const Columns c(set);
     Writer out(block);
     for (const Move& m : askers.boxes) {
+        if (has_nan(m.box)) continue;  // touches nothing, and comparisons that are turned round would not see it
         const Asker asker(m, set.axis);
         const Proxy mine = m.proxy;
-        // A pair that is not wanted is taken back before the next vector of them is written.
+        // Pairs that are not wanted are taken back.
         const auto keep_wanted = [&](Pair* from) {
             Pair* kept = from;
             for (const Pair* pair = from; pair < out.at(); ++pair) {
@@ -416,13 +473,11 @@ void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& 
         for (const RowLevel& level : set.levels) {
             if (level.count == 0) continue;
             for_ranges(set, level, lo, hi, c, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t j = begin; j < end; j += width) {
-                    out.make_room();
-                    Pair* const from = out.at();
-                    out.add(asker.proxy, c.proxies + j,
-                            hn::And(asker.overlaps<Side::Unknown, Side::Unknown>(c, j), first_lanes(end - j)));
-                    keep_wanted(from);
-                }
+                if (begin >= end) return;
+                out.make_room(end - begin, 1);
+                Pair* const from = out.at();
+                add_range<Side::Unknown, Side::Unknown>(asker, c, begin, end, out);
+                keep_wanted(from);
             });
         }
     }

@@ -15,7 +15,9 @@ struct RowGridSettings {
     /// How the rows of a level are found. A table has a place for every cell; a list names the rows that hold a box.
     enum class Rows : std::uint8_t { Chosen, Table, List };
     Rows rows = Rows::Chosen;
-    float cell = 0;                ///< edge of the finest cells, metres; 0: chosen from the boxes
+    float cell = 0;  ///< edge of the finest cells, metres; 0: chosen from the boxes
+    float side_share = 1.2;
+    float x_share = 3;
     float level_ratio = 3;         ///< cells of a level to those of the level below
     float cells_a_box = 2;         ///< a table has no more cells than that, in the mean
     std::uint32_t fit_lasts = 64;  ///< commits until levels and cells are chosen anew, if nothing asks for it before
