@@ -3,101 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <map>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "cli/arguments.hpp"
+#include "cli/facts.hpp"
 #include "cli/output.hpp"
 #include "cli/start.hpp"
 #include "fase/core/files.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/player.hpp"
+#include "fase/record/trace.hpp"
 #include "fase/scene/gltf.hpp"
-#include "fase/scene/json.hpp"
 
 namespace fase::cli {
 namespace {
-
-/// A JSON string as text that can do no harm on a terminal: without its quotes, control characters still escaped.
-std::string unquoted(std::string_view quoted) {
-    std::string safe;
-    for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
-        if (quoted[i] == '\\' && (quoted[i + 1] == '"' || quoted[i + 1] == '\\')) ++i;
-        safe += quoted[i];
-    }
-    return safe;
-}
-
-/// Facts about a file in their order: printed as lines or as one JSON object.
-class Facts {
-public:
-    void add(std::string key, std::string_view text) { entries_.push_back({std::move(key), scene::quoted(text)}); }
-    void add(std::string key, const char* text) { add(std::move(key), std::string_view(text)); }
-    void add(std::string key, bool value) { entries_.push_back({std::move(key), value ? "true" : "false"}); }
-    template <class T>
-    requires std::is_arithmetic_v<T>
-    void add(std::string key, T number) { entries_.push_back({std::move(key), fmt::format("{}", number)}); }
-    void add(std::string key, const std::vector<std::string>& texts) {
-        std::vector<std::string> values;
-        for (const std::string& text : texts) values.push_back(scene::quoted(text));
-        entries_.push_back({std::move(key), std::move(values)});
-    }
-    void add(std::string key, const std::map<std::string, std::size_t>& counts) {
-        entries_.push_back({std::move(key), counts});
-    }
-
-    [[nodiscard]] std::string json() const {
-        std::string text = "{";
-        for (const Entry& entry : entries_) {
-            if (text.size() > 1) text += ", ";
-            text += scene::quoted(entry.key) + ": ";
-            if (const auto* value = std::get_if<std::string>(&entry.value)) {
-                text += *value;
-            } else if (const auto* list = std::get_if<std::vector<std::string>>(&entry.value)) {
-                text += fmt::format("[{}]", fmt::join(*list, ", "));
-            } else {
-                std::vector<std::string> members;
-                for (const auto& [name, count] : std::get<Counts>(entry.value))
-                    members.push_back(fmt::format("{}: {}", scene::quoted(name), count));
-                text += fmt::format("{{{}}}", fmt::join(members, ", "));
-            }
-        }
-        return text + "}\n";
-    }
-    /// Aligned lines; empty lists are left out.
-    [[nodiscard]] std::string lines() const {
-        std::string text;
-        const auto line = [&](std::string_view key, std::string_view value) {
-            text += fmt::format("{:<20} {}\n", key, value);
-        };
-        for (const Entry& entry : entries_) {
-            if (const auto* value = std::get_if<std::string>(&entry.value)) {
-                const bool is_text = value->front() == '"';
-                line(entry.key, is_text ? unquoted(*value) : *value);
-            } else if (const auto* list = std::get_if<std::vector<std::string>>(&entry.value)) {
-                for (std::size_t i = 0; i < list->size(); ++i) line(i == 0 ? entry.key : "", unquoted((*list)[i]));
-            } else {
-                bool first = true;
-                for (const auto& [name, count] : std::get<Counts>(entry.value)) {
-                    line(std::exchange(first, false) ? entry.key : "", fmt::format("{} {}", count, name));
-                }
-            }
-        }
-        return text;
-    }
-
-private:
-    using Counts = std::map<std::string, std::size_t>;
-    struct Entry {
-        std::string key;
-        std::variant<std::string, std::vector<std::string>, Counts> value;  ///< texts as JSON has them
-    };
-    std::vector<Entry> entries_;
-};
 
 Result<Facts> scene_facts(const InfoOptions& options) {
     const Result<scene::Scene> read = scene::read_gltf(options.file);
@@ -163,34 +85,67 @@ Result<Facts> recording_facts(const InfoOptions& options) {
     return facts;
 }
 
-/// A trace's head: "AABT", version, boxes, frames, a flag byte a box (padded to 4), then 24 bytes a box and frame.
-Result<Facts> trace_facts(const InfoOptions& options, const FileStart& start) {
-    const auto refused = [&](std::string at, std::string problem) {
-        return Error{Status::Format, options.file + ": byte " + at, std::move(problem), {}};
-    };
-    if (start.bytes.size() < 16)
-        return refused("0", fmt::format("found {} bytes, need a head of 16", start.bytes.size()));
-    const auto u32 = [&](std::size_t offset) {
-        std::uint32_t value = 0;
-        for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(start.bytes[offset + i]) << (8 * i);
-        return value;
-    };
-    const std::uint64_t version = u32(4), boxes = u32(8), frames = u32(12);
-    if (version != 1) return refused("4", fmt::format("found trace version {}, this program reads 1", version));
-    if (boxes == 0 || frames == 0)
-        return refused("8", fmt::format("found {} boxes in {} frames, need at least one of each", boxes, frames));
-    // boxes * 24 stays below 2^37; frames are found by division, so that nothing overflows.
-    const std::uint64_t head = 16 + (boxes + 3) / 4 * 4, frame = boxes * 24;
-    if (start.size < head || (start.size - head) % frame != 0 || (start.size - head) / frame != frames) {
-        return refused("8", fmt::format("found {} boxes in {} frames in a file of {} bytes, need a size that fits",
-                                        boxes, frames, start.size));
+std::string text_of(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+/// Reads the whole trace, and so judges it.
+Result<Facts> trace_facts(const InfoOptions& options) {
+    Result<record::TraceReader> trace = record::TraceReader::open(options.file);
+    if (!trace) return trace.error();
+    std::vector<Aabb> before, boxes;
+    Aabb room;
+    std::size_t infinite = 0, moves = 0, woken = 0, static_boxes = 0, asleep = 0;
+    double size_sum = 0;
+    float least = Aabb::infinity, largest = 0;
+    std::vector<std::uint8_t> has_moved(trace->boxes(), 0);
+    for (std::uint32_t frame = 0; frame < trace->frames(); ++frame) {
+        if (const Result<bool> read = trace->next(boxes); !read) return read.error();
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Vec3 sides = extent(boxes[i]);
+            const float size = std::max({sides.x, sides.y, sides.z});
+            const bool is_infinite = !(size < Aabb::infinity);
+            if (!is_infinite) room = merge(room, boxes[i]);
+            if (frame == 0) {
+                infinite += is_infinite ? 1 : 0;
+                size_sum += is_infinite ? 0.0 : double(size);
+                least = std::min(least, size);
+                largest = std::max(largest, size);
+            } else if (!(boxes[i] == before[i])) {
+                has_moved[i] = 1;
+                ++moves;
+            }
+        }
+        before.swap(boxes);
     }
+    for (std::size_t i = 0; i < trace->boxes(); ++i) {
+        const bool stands = (trace->flags()[i] & record::trace_static) != 0;
+        static_boxes += stands ? 1 : 0;
+        if (stands || (trace->flags()[i] & record::trace_asleep) == 0) continue;
+        ++asleep;
+        woken += has_moved[i];
+    }
+    const auto moved = static_cast<std::size_t>(std::count(has_moved.begin(), has_moved.end(), 1));
     Facts facts;
     facts.add("kind", "box trace (AABT)");
-    facts.add("version", version);
-    facts.add("boxes", boxes);
-    facts.add("frames", frames);
-    facts.add("bytes", start.size);
+    facts.add("version", record::trace_version);
+    facts.add("boxes", trace->boxes());
+    facts.add("frames", trace->frames());
+    facts.add("static", static_boxes);
+    facts.add("asleep", asleep);
+    facts.add("woken", woken);
+    facts.add("moved", moved);
+    facts.add("moves_a_frame",
+              trace->frames() < 2 ? 0.0 : static_cast<double>(moves) / static_cast<double>(trace->frames() - 1));
+    facts.add("infinite", infinite);
+    if (infinite < trace->boxes()) {
+        facts.add("least_size", least);
+        facts.add("mean_size", size_sum / static_cast<double>(trace->boxes() - infinite));
+    }
+    if (infinite == 0) facts.add("largest_size", largest);
+    if (!is_empty(room)) {
+        facts.add("room_least", std::string_view(text_of(room.lo)));
+        facts.add("room_largest", std::string_view(text_of(room.hi)));
+    }
+    facts.add("bytes", trace->bytes());
     facts.add("warnings", std::vector<std::string>{});
     return facts;
 }
@@ -203,7 +158,7 @@ Result<Facts> facts_of(const InfoOptions& options) {
     }
     const std::string_view head(reinterpret_cast<const char*>(start->bytes.data()), start->bytes.size());
     if (head.starts_with(record::file_magic.substr(0, 7))) return recording_facts(options);
-    if (head.starts_with("AABT")) return trace_facts(options, *start);
+    if (head.starts_with(record::trace_magic)) return trace_facts(options);
     return scene_facts(options);
 }
 
@@ -220,9 +175,9 @@ int run_info(const InfoOptions& options) {
 void add_info(CLI::App& app, Start& start) {
     auto& info = start.options<InfoOptions>();
     CLI::App& command = *app.add_subcommand("info", "Say what a file is and what is in it");
-    add_text(command, "FILE", "A scene or a recording", info.file)->required();
+    add_text(command, "FILE", "A scene, a recording or a trace", info.file)->required();
     add_json(command, info.json);
-    command.footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json");
+    command.footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt");
     start.on(command, [&info] { return run_info(info); });
 }
 

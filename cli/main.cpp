@@ -12,6 +12,7 @@
 #include "cli/info.hpp"
 #include "cli/output.hpp"
 #include "cli/pairs.hpp"
+#include "cli/query.hpp"
 #include "cli/run.hpp"
 #include "cli/start.hpp"
 #include "cli/view.hpp"
@@ -51,6 +52,7 @@ int run_program(int count, char** arguments) {
     add_distance(app, start);
     add_draw(app, start);
     add_pairs(app, start);
+    add_query(app, start);
 #ifdef HAS_FASE_BENCH
     add_bench(app, start);
 #endif

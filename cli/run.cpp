@@ -2,7 +2,6 @@
 #include "cli/run.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 
 #include "cli/arguments.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/load_scene.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_summary.hpp"
@@ -20,32 +20,12 @@
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/recorder.hpp"
 #include "fase/record/world_trace.hpp"
-#include "fase/scene/generate.hpp"
-#include "fase/scene/gltf.hpp"
 #include "fase/world/world.hpp"
 
 namespace fase::cli {
 namespace {
 
 constexpr double default_seconds = 10, most_seconds = 1e9;
-
-bool exists(const std::string& path) {
-    struct stat there {};
-    return ::stat(path.c_str(), &there) == 0;
-}
-
-Result<scene::Scene> load(const RunOptions& options) {
-    if (exists(options.scene)) return scene::read_gltf(options.scene);
-    std::string kinds;
-    for (const scene::Generator& kind : scene::generators()) {
-        if (kind.name == options.scene) return scene::generate(kind.name, {options.count, options.seed});
-        kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
-    }
-    return Error{Status::Io,
-                 printable(options.scene, 200),
-                 "found no such file, need a .gltf or .glb file, or one of " + kinds,
-                 {}};
-}
 
 Settings settings_of(const RunOptions& options, const scene::Scene& scene) {
     Settings settings = scene::settings_for(scene);
@@ -108,7 +88,7 @@ Result<Run> prepare(const RunOptions& options) {
         }
     }
     if (auto writable = check_outputs(options); !writable) return writable.error();
-    const Result<scene::Scene> scene = load(options);
+    const Result<scene::Scene> scene = load_scene(options.scene, {options.count, options.seed});
     if (!scene) return scene.error();
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const int threads = options.threads > 0 ? options.threads : cores;

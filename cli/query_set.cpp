@@ -1,0 +1,91 @@
+/// The questions that `fase query` asks: rays, boxes and cameras strewn over a set of boxes.
+#include "cli/query_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fase/core/random.hpp"
+
+namespace fase::cli {
+namespace {
+
+Vec3 point_in(Random& random, const Aabb& box) {
+    const float x = random.between(box.lo.x, box.hi.x), y = random.between(box.lo.y, box.hi.y);
+    return {x, y, random.between(box.lo.z, box.hi.z)};
+}
+/// Unit, all directions alike: a point of a ball, drawn until it is in it.
+Vec3 direction(Random& random) {
+    for (;;) {
+        const Vec3 p = point_in(random, {{-1, -1, -1}, {1, 1, 1}});
+        const float size = length_squared(p);
+        if (size > 1e-3f && size <= 1) return p * (1 / std::sqrt(size));
+    }
+}
+
+Frustum seen_from(Vec3 eye, Vec3 forward, Vec3 any, float far) {
+    constexpr double half_width = 0.5773502691896258, half_height = half_width * 9 / 16;  // tan 30°
+    constexpr double near = 0.1;
+    const Vec3d f = to_double(forward);
+    Vec3d right = cross(f, to_double(any));
+    right = right * (1 / length(right));
+    const Vec3d up = cross(right, f), at = to_double(eye);
+    const auto side = [&](Vec3d normal) {
+        normal = normal * (1 / length(normal));
+        return Frustum::Side{normal, dot(normal, at)};
+    };
+    Frustum frustum;
+    frustum.sides = {side(-right - f * half_width),         side(right - f * half_width),
+                     side(-up - f * half_height),           side(up - f * half_height),
+                     Frustum::Side{-f, -dot(f, at) - near}, Frustum::Side{f, dot(f, at) + double(far)}};
+    return frustum;
+}
+
+/// Where most of the boxes are, and how large they are in the mean.
+struct Place {
+    Aabb around;
+    Vec3 mean_extent;
+};
+Place place_of(std::span<const Aabb> boxes) {
+    constexpr float far = 1e7f;
+    constexpr Aabb reach{{-far, -far, -far}, {far, far, far}};
+    Aabb around;
+    Vec3d sum{};
+    double count = 0;
+    for (const Aabb& box : boxes) {
+        if (is_empty(box) || !contains(reach, box)) continue;
+        around = merge(around, box);
+        sum += to_double(extent(box));
+        ++count;
+    }
+    if (count == 0) return {{{-1, -1, -1}, {1, 1, 1}}, {1, 1, 1}};
+    return {around, to_float(sum * (1 / count))};
+}
+
+}  // namespace
+
+QuerySet strew_queries(std::span<const Aabb> boxes, const QueryCounts& counts, std::uint64_t seed) {
+    const Place place = place_of(boxes);
+    const float across = std::max(length(extent(place.around)), 1e-3f);
+    QuerySet set;
+    // Streams of their own: how many rays there are does not change the boxes.
+    Random random(seed, 0);
+    for (std::size_t i = 0; i < counts.rays; ++i) {
+        const Vec3 from = point_in(random, place.around);
+        set.rays.push_back({to_double(from), direction(random), across});
+    }
+    random = Random(seed, 1);
+    for (std::size_t i = 0; i < counts.boxes; ++i) {
+        const Vec3 at = point_in(random, place.around);
+        set.boxes.push_back({at - place.mean_extent, at + place.mean_extent});
+    }
+    random = Random(seed, 2);
+    for (std::size_t i = 0; i < counts.frusta; ++i) {
+        const Vec3 eye = point_in(random, place.around), forward = direction(random);
+        Vec3 any = direction(random);
+        while (length_squared(cross(forward, any)) < 0.01f) any = direction(random);
+        set.frusta.push_back(seen_from(eye, forward, any, across / 4));
+    }
+    return set;
+}
+
+}  // namespace fase::cli
