@@ -2,7 +2,7 @@
 /// The cells of a hashed grid that hold something, numbered in the order in which they were first entered.
 #include <vector>
 
-#include "fase/broad/cell_frame.hpp"
+#include "fase/broad/grid_frame.hpp"
 #include "fase/core/hash.hpp"
 
 namespace fase::broad {

@@ -5,7 +5,7 @@
 
 namespace fase::broad {
 
-RayCells::RayCells(const Ray& ray, Vec3 before, Vec3 after, const CellFrame& frame, const CellRange& within)
+RayCells::RayCells(const Ray& ray, Vec3 before, Vec3 after, const GridFrame& frame, const CellRange& within)
     : frame_(frame),
       within_(within),
       origin_(ray.origin),

@@ -1,6 +1,6 @@
 #pragma once
 /// The cells of a grid that a ray goes through, and the cells around a point, near ones first.
-#include "fase/broad/cell_frame.hpp"
+#include "fase/broad/grid_frame.hpp"
 #include "fase/geometry/ray.hpp"
 
 namespace fase::broad {
@@ -12,7 +12,7 @@ namespace fase::broad {
 class RayCells {
 public:
     /// Only cells within `within`, which is not empty and holds none of the endless cells, are of interest.
-    RayCells(const Ray& ray, Vec3 before, Vec3 after, const CellFrame& frame, const CellRange& within);
+    RayCells(const Ray& ray, Vec3 before, Vec3 after, const GridFrame& frame, const CellRange& within);
 
     [[nodiscard]] bool is_empty() const { return count_ <= 0; }
     /// Slices to go through: 0..count()-1, in the order of the ray.
@@ -32,7 +32,7 @@ public:
     }
 
 private:
-    CellFrame frame_;
+    GridFrame frame_;
     CellRange within_;
     Vec3d origin_, direction_, before_, after_, slack_;
     double length_ = 0;

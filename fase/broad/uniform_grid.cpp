@@ -16,7 +16,7 @@ double longest_side(const Aabb& box) {
 
 /// From a sample of at most 512 boxes, so that a few that are huge or far away do not count: cells as large as most
 /// boxes and somewhat more, larger where there is so much room that most cells would hold less than two.
-CellFrame UniformGrid::fitting_frame() const {
+GridFrame UniformGrid::fitting_frame() const {
     constexpr std::size_t most = 512;
     const std::span<const Move> boxes = store_.ordinary();
     if (boxes.empty()) return {};
@@ -31,7 +31,7 @@ CellFrame UniformGrid::fitting_frame() const {
             middles[static_cast<std::size_t>(axis)][i] = 0.5 * (double(box.lo[axis]) + box.hi[axis]);
     }
     std::sort(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(count));
-    CellFrame frame;
+    GridFrame frame;
     std::array<double, 3> room;
     double widest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -55,11 +55,11 @@ CellFrame UniformGrid::fitting_frame() const {
 void UniformGrid::commit() {
     const bool changed = store_.take_changed(), awake_changed = store_.take_awake_changed();
     if (!changed && !awake_changed) return;
-    CellFrame frame = fitting_frame();
+    GridFrame frame = fitting_frame();
     for (Level& level : levels_) {
         level = {.frame = frame,
-                 .used = {{CellFrame::far, CellFrame::far, CellFrame::far},
-                          {-CellFrame::far, -CellFrame::far, -CellFrame::far}}};
+                 .used = {{GridFrame::far, GridFrame::far, GridFrame::far},
+                          {-GridFrame::far, -GridFrame::far, -GridFrame::far}}};
         frame.side *= ratio;
         frame.inverse = 1 / frame.side;
     }

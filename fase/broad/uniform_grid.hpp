@@ -86,7 +86,7 @@ private:
     static constexpr std::uint32_t all_marks = 7;
 
     struct Level {
-        CellFrame frame;
+        GridFrame frame;
         CellRange used;  // around the cells in use
         std::size_t boxes = 0, cells = 0;
     };
@@ -109,7 +109,7 @@ private:
     std::vector<Move> large_;
     std::vector<Entry> entering_;  // scratch of commit()
 
-    [[nodiscard]] CellFrame fitting_frame() const;
+    [[nodiscard]] GridFrame fitting_frame() const;
     void enter_boxes(bool awake);
     void enter(std::uint32_t place);
     void fill_cells();

@@ -25,7 +25,7 @@ struct CellRange {
     [[nodiscard]] constexpr bool contains(const CellPlace& at) const {
         return lo[0] <= at[0] && at[0] <= hi[0] && lo[1] <= at[1] && at[1] <= hi[1] && lo[2] <= at[2] && at[2] <= hi[2];
     }
-    /// Does it reach to the last cells that are counted? See CellFrame.
+    /// Does it reach to the last cells that are counted? See GridFrame.
     [[nodiscard]] constexpr bool has_endless_cells() const;
     friend constexpr bool operator==(const CellRange&, const CellRange&) = default;
 };
@@ -41,7 +41,7 @@ constexpr CellRange common_part(const CellRange& a, const CellRange& b) {
 /// Cubes of one size, counted from an origin. What is more than `far` cells away is in the last cell that is counted,
 /// which so is endless: the cell of a coordinate never falls when the coordinate grows, and intervals that touch share
 /// a cell, wherever they are.
-struct CellFrame {
+struct GridFrame {
     static constexpr std::int32_t far = 1 << 30;
     Vec3d origin;
     double side = 1;     ///< metres
@@ -81,7 +81,7 @@ struct CellFrame {
 
 constexpr bool CellRange::has_endless_cells() const {
     for (std::size_t k = 0; k < 3; ++k)
-        if (lo[k] <= -CellFrame::far || hi[k] >= CellFrame::far) return true;
+        if (lo[k] <= -GridFrame::far || hi[k] >= GridFrame::far) return true;
     return false;
 }
 
