@@ -99,7 +99,8 @@ void LooseOctree::find_awake_pairs(std::vector<Pair>& out) const {
     if (store_.resting() == 0) return find_pairs(out);
     PairSink sink(out);
     store_.odd_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
-    find_pairs_near_leaves(tree_, {0, tree_.leaves().size()}, true, sink);
+    if (!tree_.empty() && tree_.nodes()[CellTree::root].awake)
+        find_pairs_near_leaves(tree_, {0, tree_.leaves().size()}, true, sink);
 }
 
 std::size_t LooseOctree::bytes() const {

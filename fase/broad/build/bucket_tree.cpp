@@ -194,15 +194,24 @@ template <int Dim> void BucketTree<Dim>::find_awake_pairs(std::vector<Pair>& out
     this->store_.odd_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
     const std::span<const CellTree::Node> nodes = this->tree_.nodes();
     if (nodes.empty()) return;
+    constexpr std::size_t gap = 64;  // leaves that may be passed over one by one
+    LeafRange range;
     LocalStack<std::uint32_t, 128> open;
     open.push(CellTree::root);
     while (!open.empty()) {
         const CellTree::Node& node = nodes[open.pop()];
         if (!node.awake) continue;
-        if (node.is_leaf()) find_pairs_in_leaves(this->tree_, {node.leaf_begin, node.leaf_end}, Dim, true, sink);
+        if (node.is_leaf()) {
+            if (node.leaf_begin > range.end + gap) {
+                find_pairs_in_leaves(this->tree_, range, Dim, true, sink);
+                range.begin = node.leaf_begin;
+            }
+            range.end = node.leaf_end;
+        }
         for (int k = std::popcount(node.children); k-- > 0;)
             open.push(node.first_child + static_cast<std::uint32_t>(k));
     }
+    find_pairs_in_leaves(this->tree_, range, Dim, true, sink);
 }
 
 /// Holds the leaves against the steps of all boxes, computed afresh.

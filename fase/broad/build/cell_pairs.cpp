@@ -15,7 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void in_leaves(const CellTree& tree, LeafRange range, std::uint32_t dimensions, bool awake_only, PairSink& sink) {
     PairsInLeaves search(tree, dimensions, sink);
-    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) search.run(tree.leaves()[leaf], awake_only);
+    for (const CellTree::Leaf& leaf : tree.leaves().subspan(range.begin, range.end - range.begin))
+        if (!awake_only || tree.nodes()[leaf.node].awake) search.run(leaf, awake_only);
 }
 void near_leaves(const CellTree& tree, LeafRange range, bool awake_only, PairSink& sink) {
     PairsNearLeaves search(tree, sink);
