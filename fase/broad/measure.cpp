@@ -2,20 +2,21 @@
 #include "fase/broad/measure.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace fase::broad {
 namespace {
 
-/// Room for the roundings of the tests that these bounds stand in front of.
-Aabb with_room(Vec3d lo, Vec3d hi, double reach) {
-    const auto largest = [](Vec3d v) {
-        const auto finite = [](double x) { return std::isfinite(x) ? std::abs(x) : 0.0; };
-        return finite(v.x) + finite(v.y) + finite(v.z);
-    };
-    const double room = 1e-12 * (largest(lo) + largest(hi) + (std::isfinite(reach) ? reach : 0.0));
+double size_of(Vec3d v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+/// Room for the roundings of the tests that these bounds stand in front of; `size`: of the finite numbers in them.
+Aabb with_room(Vec3d lo, Vec3d hi, double size) {
+    const double room = size < std::numeric_limits<double>::infinity() ? 1e-12 * size : 0;
     const Vec3d out{room, room, room};
     return rounded_outward(lo - out, hi + out);
 }
+
+double finite(double x) { return x < std::numeric_limits<double>::infinity() ? x : 0; }
 
 /// 0 along an axis that the ray does not move on, however long it is.
 double moved(double direction, double length) { return direction == 0 ? 0 : direction * length; }
@@ -27,7 +28,9 @@ RayMeasure::RayMeasure(const Ray& ray, Vec3 before, Vec3 after)
     const double length = ray.length;
     const Vec3d by{moved(ray.direction.x, length), moved(ray.direction.y, length), moved(ray.direction.z, length)};
     const Vec3d end = ray.origin + by;
-    bounds_ = with_room(min(ray.origin, end) + to_double(before), max(ray.origin, end) + to_double(after), length);
+    bounds_ = with_room(min(ray.origin, end) + to_double(before), max(ray.origin, end) + to_double(after),
+                        2 * size_of(ray.origin) + size_of(to_double(before)) + size_of(to_double(after)) +
+                            3 * finite(length) * (1 + size_of(to_double(ray.direction))));
 }
 
 Aabb RayMeasure::met_by_origin(const Aabb& box) const {
@@ -36,7 +39,7 @@ Aabb RayMeasure::met_by_origin(const Aabb& box) const {
 
 PointMeasure::PointMeasure(Vec3d point, float radius) : point_(point), radius_(radius) {
     const double r = radius;
-    bounds_ = with_room(point - Vec3d{r, r, r}, point + Vec3d{r, r, r}, r);
+    bounds_ = with_room(point - Vec3d{r, r, r}, point + Vec3d{r, r, r}, 2 * size_of(point) + 8 * finite(r));
 }
 
 }  // namespace fase::broad

@@ -1,5 +1,6 @@
 #pragma once
 /// Rays, and the test of a ray against boxes.
+#include <cstddef>
 #include <limits>
 
 #include "fase/geometry/aabb.hpp"
@@ -51,9 +52,11 @@ private:
     /// A ray within the slab's plane makes 0 times infinity; comparisons with NaN are false and leave near and far
     /// alone, as they must: the box is closed.
     static void clip(float lo, float hi, double origin, double inverse, double& near, double& far) {
-        const bool forward = inverse > 0;
-        const double in = (double(forward ? lo : hi) - origin) * inverse;
-        const double out = (double(forward ? hi : lo) - origin) * inverse;
+        // By index: which way the ray runs cannot be foreseen, and a branch would cost more than the rest.
+        const float bounds[2] = {lo, hi};
+        const std::size_t forward = inverse > 0 ? 1 : 0;
+        const double in = (double(bounds[1 - forward]) - origin) * inverse;
+        const double out = (double(bounds[forward]) - origin) * inverse;
         near = in > near ? in : near;
         far = out < far ? out : far;
     }

@@ -38,20 +38,22 @@ HWY_EXPORT(descend);
 HWY_EXPORT(open_one);
 HWY_EXPORT(refit_nodes);
 
-bool is_plain(const RayMeasure& measure) {
-    const Ray& ray = measure.ray();
-    const auto small = [](double x) { return std::abs(x) <= 1e18; };  // false for NaN
-    const Vec3 before = measure.before(), after = measure.after(), d = ray.direction;
-    return small(ray.origin.x) && small(ray.origin.y) && small(ray.origin.z) && small(before.x) && small(before.y) &&
-           small(before.z) && small(after.x) && small(after.y) && small(after.z) && small(d.x) && small(d.y) &&
-           small(d.z) && ray.length >= 0;
+namespace {
+
+template <class V> double size_of(const V& v) {
+    return std::abs(double(v.x)) + std::abs(double(v.y)) + std::abs(double(v.z));
 }
 
-bool is_plain(const PointMeasure& measure) {
-    const auto small = [](double x) { return std::abs(x) <= 1e18; };
-    const Vec3d p = measure.point();
-    return small(p.x) && small(p.y) && small(p.z) && measure.radius() >= 0;
+}  // namespace
+
+bool is_plain(const RayMeasure& measure) {
+    const Ray& ray = measure.ray();
+    const double size =
+        size_of(ray.origin) + size_of(measure.before()) + size_of(measure.after()) + size_of(ray.direction);
+    return size <= 1e18 && ray.length >= 0;  // false for NaN
 }
+
+bool is_plain(const PointMeasure& measure) { return size_of(measure.point()) <= 1e18 && measure.radius() >= 0; }
 
 void nearest_first(const Forest& forest, const RayMeasure& measure, float limit, Near visit) {
     HWY_DYNAMIC_DISPATCH(nearest_to_ray)(forest, measure, limit, visit);

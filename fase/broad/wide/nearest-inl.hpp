@@ -14,23 +14,21 @@ template <bool Careful> class RayTest {
 public:
     explicit RayTest(const RayMeasure& measure) : length_(measure.ray().length) {
         const Ray& ray = measure.ray();
-        const Vec3d o = ray.origin, before = to_double(measure.before()), after = to_double(measure.after());
+        const Vec3 o = to_float(ray.origin), before = measure.before(), after = measure.after();
         // A carried box: its sums with the stored box are rounded to float, outward, in the exact test.
-        const bool thick = !(before == Vec3d{} && after == Vec3d{});
-        const double share = thick ? 0x1p-20 : 0.0, always = double(least);
-        const auto room = [&](int axis) {
-            return share * (std::abs(o[axis]) + std::abs(before[axis]) + std::abs(after[axis])) + always;
-        };
-        const Vec3d rooms{room(0), room(1), room(2)};
-        const Aabb rounded = rounded_outward(o + before - rooms, o + after + rooms);
+        const bool thick = !(before == Vec3{} && after == Vec3{});
+        const float share = thick ? 0x1p-19f : 0x1p-22f;
         for (int axis = 0; axis < 3; ++axis) {
-            const float d = ray.direction[axis];
-            const bool forward = !(d < 0);
-            in_row_[axis] = width * static_cast<std::size_t>(forward ? axis : axis + 3);
-            out_row_[axis] = width * static_cast<std::size_t>(forward ? axis + 3 : axis);
-            in_from_[axis] = forward ? rounded.hi[axis] : rounded.lo[axis];
-            out_from_[axis] = forward ? rounded.lo[axis] : rounded.hi[axis];
-            in_inverse_[axis] = d == 0 ? std::numeric_limits<float>::infinity() : 1.0f / d;
+            const float d = ray.direction[axis] + 0.0f;  // of -0 as of 0
+            const float room = share * (std::abs(o[axis]) + (after[axis] - before[axis])) + least;
+            const float ends[2] = {o[axis] + after[axis] + room, o[axis] + before[axis] - room};
+            // By index: whether the ray runs backward cannot be foreseen, and a branch would be dear.
+            const std::size_t backward = std::bit_cast<std::uint32_t>(d) >> 31;
+            in_row_[axis] = width * (static_cast<std::size_t>(axis) + 3 * backward);
+            out_row_[axis] = width * (static_cast<std::size_t>(axis) + 3 * (backward ^ 1));
+            in_from_[axis] = ends[backward];
+            out_from_[axis] = ends[backward ^ 1];
+            in_inverse_[axis] = 1.0f / d;
             out_inverse_[axis] = in_inverse_[axis] * ray_slack;
         }
     }
