@@ -46,30 +46,41 @@ private:
 struct CullPlane {
     float normal[3];
     float offset, margin_offset, margin_size;  // the margin: margin_offset + margin_size * (size of coordinates)
-    int near_row[3], far_row[3];               // the corners least and most far along the normal
+    std::size_t near_row[3], far_row[3];       // of the corners least and most far along the normal
 };
 
 struct BranchToCull {
     std::uint32_t node;
-    std::uint32_t planes;  // a bit for each plane that not all of the node is surely inside of
+    std::uint32_t planes;  // a bit for each plane that not all of the node is surely inside of; bounds_bit likewise
+};
+constexpr std::uint32_t bounds_bit = 64;
+
+/// What is known of eight children, a bit each.
+struct Verdict {
+    std::uint32_t met = 0xff;       // not surely outside
+    std::uint32_t inside = 0xff;    // surely inside of all planes
+    std::uint32_t touching = 0xff;  // surely not outside of any
+    std::uint32_t cut = 0;          // surely not inside of all
+    std::uint32_t inside_of[7];     // each plane, and the bounds; where it was asked
 };
 
-class Culling {
+/// `OneMargin`: coordinates are so small that one margin does for all.
+template <bool OneMargin> class Culling {
 public:
-    Culling(const Forest& forest, const FrustumRegion& region, Take take)
-        : forest_(forest),
-          region_(region),
-          runs_(forest, take),
-          bounds_(region.bounds()),
-          bounds_box_(clamped(bounds_)) {
+    Culling(const Forest& forest, const FrustumRegion& region, float largest, Take take)
+        : forest_(forest), region_(region), runs_(forest, take), bounds_(finite(region.bounds())) {
         for (const Frustum::Side& side : region.frustum().sides) {
             const bool bounds_nothing = side.normal == Vec3d{} && side.offset >= 0;
-            if (!bounds_nothing) planes_[plane_count_++] = plane_of(side);
+            if (!bounds_nothing) planes_[plane_count_++] = plane_of(side, largest);
         }
     }
     void run() {
-        for (std::size_t i = forest_.roots.size(); i-- > 0;) open_.push({forest_.roots[i], (1u << plane_count_) - 1});
-        while (!open_.empty()) visit(open_.pop());
+        const std::uint32_t all = ((1u << plane_count_) - 1) | bounds_bit;
+        for (std::size_t i = forest_.roots.size(); i-- > 0;) open_.push({forest_.roots[i], all});
+        while (!open_.empty()) {
+            const BranchToCull branch = open_.pop();
+            sort_out(branch, judge(forest_.nodes[branch.node], branch.planes));
+        }
         runs_.flush();
     }
 
@@ -78,97 +89,105 @@ private:
     const FrustumRegion& region_;
     Runs runs_;
     Aabb bounds_;
-    WideBox bounds_box_;
     CullPlane planes_[6];
     std::uint32_t plane_count_ = 0;
     LocalStack<BranchToCull, 256> open_;
 
     /// Finite, so that unused children do not overlap it.
-    static Aabb clamped(const Aabb& box) {
+    static Aabb finite(const Aabb& box) {
         const float most = std::numeric_limits<float>::max();
         return {max(box.lo, {-most, -most, -most}), min(box.hi, {most, most, most})};
     }
-    static CullPlane plane_of(const Frustum::Side& side) {
+    static CullPlane plane_of(const Frustum::Side& side, float largest) {
         constexpr double share = 0x1p-20;  // of all that is summed; at most 5 * 2^-24 is lost
         CullPlane plane;
-        double largest = 0;
+        double steepest = 0;
         for (int axis = 0; axis < 3; ++axis) {
             plane.normal[axis] = static_cast<float>(side.normal[axis]);
-            largest = std::max(largest, std::abs(side.normal[axis]));
+            steepest = std::max(steepest, std::abs(side.normal[axis]));
             const bool up = side.normal[axis] > 0;
-            plane.near_row[axis] = up ? axis : axis + 3;
-            plane.far_row[axis] = up ? axis + 3 : axis;
+            plane.near_row[axis] = width * static_cast<std::size_t>(up ? axis : axis + 3);
+            plane.far_row[axis] = width * static_cast<std::size_t>(up ? axis + 3 : axis);
         }
         plane.offset = static_cast<float>(side.offset);
-        plane.margin_offset = static_cast<float>(share * std::abs(side.offset) + 1e-36);
-        plane.margin_size = static_cast<float>(share * largest);
+        const double sizes = OneMargin ? 3 * steepest * double(largest) : 0.0;
+        plane.margin_offset = static_cast<float>(share * (std::abs(side.offset) + sizes) + 1e-36);
+        plane.margin_size = static_cast<float>(share * steepest);
         return plane;
     }
-
-    void visit(BranchToCull branch) {
-        const Node& node = forest_.nodes[branch.node];
-        std::uint32_t outside = ~bounds_box_.overlaps(node) & 0xff;
-        std::uint32_t inside = 0xff;    // surely inside of all planes
-        std::uint32_t touching = 0xff;  // surely not outside of any
-        std::uint32_t cut = 0;          // surely not inside of all
-        std::uint32_t inside_plane[6] = {};
-        alignas(64) float size[width];
-        for (int i = 0; i < width; i += lanes) {
-            V sum = hn::Zero(Floats());
-            for (int axis = 0; axis < 3; ++axis)
-                sum = sum + hn::Max(hn::Abs(load(node.plane[axis] + i)), hn::Abs(load(node.plane[axis + 3] + i)));
-            hn::Store(sum, Floats(), size + i);
+    /// The corners of eight children along a normal, for the rows given.
+    static HWY_INLINE V along(const CullPlane& plane, const float* planes, const std::size_t* rows) {
+        return load(planes + rows[0]) * splat(plane.normal[0]) + load(planes + rows[1]) * splat(plane.normal[1]) +
+               load(planes + rows[2]) * splat(plane.normal[2]);
+    }
+    static HWY_INLINE V size_of(const float* planes) {
+        V sum = hn::Zero(Floats());
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            sum = sum + hn::Max(hn::Abs(load(planes + width * axis)), hn::Abs(load(planes + width * (axis + 3))));
         }
-        for (std::uint32_t left = branch.planes; left != 0;) {
-            const std::uint32_t p = take_bit(left);
-            const CullPlane& plane = planes_[p];
-            const V x = splat(plane.normal[0]), y = splat(plane.normal[1]), z = splat(plane.normal[2]);
-            std::uint32_t is_out = 0, is_in = 0, is_touching = 0, is_cut = 0;
-            for (int i = 0; i < width; i += lanes) {
-                const V margin = splat(plane.margin_offset) + splat(plane.margin_size) * load(size + i);
-                const V beyond_plane = splat(plane.offset) + margin, before_plane = splat(plane.offset) - margin;
-                const V least_far = load(node.plane[plane.near_row[0]] + i) * x +
-                                    load(node.plane[plane.near_row[1]] + i) * y +
-                                    load(node.plane[plane.near_row[2]] + i) * z;
-                const V most_far = load(node.plane[plane.far_row[0]] + i) * x +
-                                   load(node.plane[plane.far_row[1]] + i) * y +
-                                   load(node.plane[plane.far_row[2]] + i) * z;
-                is_out |= bits_of(hn::Gt(least_far, beyond_plane)) << i;
-                is_touching |= bits_of(hn::Lt(least_far, before_plane)) << i;
-                is_cut |= bits_of(hn::Gt(most_far, beyond_plane)) << i;
-                is_in |= bits_of(hn::Lt(most_far, before_plane)) << i;
-            }
-            outside |= is_out;
-            inside &= is_in;
-            touching &= is_touching;
-            cut |= is_cut;
-            inside_plane[p] = is_in;
-        }
-        sort_out(branch, node, ~outside & 0xff, inside, touching, cut, inside_plane);
+        return sum;
     }
 
-    void sort_out(BranchToCull branch, const Node& node, std::uint32_t met, std::uint32_t inside,
-                  std::uint32_t touching, std::uint32_t cut, const std::uint32_t* inside_plane) {
+    HWY_INLINE Verdict judge(const Node& node, std::uint32_t asked) const {
+        Verdict verdict;
+        if ((asked & bounds_bit) != 0) {
+            const WideBox box(bounds_);
+            verdict.met = box.overlaps(node);
+            verdict.inside_of[6] = box.contains(node);
+        }
+        for (std::uint32_t left = asked & (bounds_bit - 1); left != 0;) {
+            const std::uint32_t p = take_bit(left);
+            const CullPlane& plane = planes_[p];
+            std::uint32_t out = 0, in = 0, touching = 0, cut = 0;
+            for (std::size_t i = 0; i < width; i += lanes) {
+                const float* const planes = node.plane[0] + i;
+                V margin = splat(plane.margin_offset);
+                if constexpr (!OneMargin) margin = margin + splat(plane.margin_size) * size_of(planes);
+                const V past = splat(plane.offset) + margin, before = splat(plane.offset) - margin;
+                const V least_far = along(plane, planes, plane.near_row),
+                        most_far = along(plane, planes, plane.far_row);
+                out |= bits_of(hn::Gt(least_far, past)) << i;
+                touching |= bits_of(hn::Lt(least_far, before)) << i;
+                cut |= bits_of(hn::Gt(most_far, past)) << i;
+                in |= bits_of(hn::Lt(most_far, before)) << i;
+            }
+            verdict.met &= ~out;
+            verdict.inside &= in;
+            verdict.touching &= touching;
+            verdict.cut |= cut;
+            verdict.inside_of[p] = in;
+        }
+        return verdict;
+    }
+
+    void sort_out(BranchToCull branch, const Verdict& verdict) {
+        const Node& node = forest_.nodes[branch.node];
         BranchToCull below[width];
         std::uint32_t below_count = 0;
-        while (met != 0) {
+        for (std::uint32_t met = verdict.met; met != 0;) {
             const std::uint32_t child = take_bit(met), bit = 1u << child, link = node.link[child];
             if (link == none) continue;
             const std::uint32_t first = node.first[child];
             if ((link & leaf_bit) != 0) {
-                if ((inside & bit) != 0) {
+                if ((verdict.inside & bit) != 0) {
                     runs_.add(first, first + 1, true);
-                } else if ((touching & cut & bit) != 0) {
+                } else if ((verdict.touching & verdict.cut & bit) != 0) {
                     runs_.add(first, first + 1, false);
                 } else if (const Aabb box = node.box(child); region_.touches(box)) {
                     runs_.add(first, first + 1, region_.contains(box));
                 }
-            } else if ((inside & bit) != 0 && contains(bounds_, node.box(child))) {
+                continue;
+            }
+            std::uint32_t planes = 0;
+            for (std::uint32_t left = branch.planes; left != 0;) {
+                const std::uint32_t p = take_bit(left);
+                planes |= (~verdict.inside_of[p] >> child & 1) << p;
+            }
+            if (planes == 0) {
                 runs_.add(first, forest_.end_of(branch.node, child), true);
             } else {
-                std::uint32_t planes = 0;
-                for (std::uint32_t p = 0; p < plane_count_; ++p)
-                    planes |= (branch.planes >> p & 1) & ~(inside_plane[p] >> child & 1) ? 1u << p : 0;
+                const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&forest_.nodes[link]);
+                for (std::size_t line = 0; line < sizeof(Node); line += 64) hwy::Prefetch(bytes + line);
                 below[below_count++] = {link, planes};
             }
         }
@@ -177,4 +196,18 @@ private:
     }
 };
 
-void cull_frustum(const Forest& forest, const FrustumRegion& region, Take take) { Culling(forest, region, take).run(); }
+void cull_frustum(const Forest& forest, const FrustumRegion& region, Take take) {
+    float largest = 0;
+    for (const std::uint32_t root : forest.roots) {
+        const Aabb all = forest.nodes[root].united();
+        if (is_empty(all)) continue;
+        for (int axis = 0; axis < 3; ++axis)
+            largest = std::max(largest, std::max(std::abs(all.lo[axis]), std::abs(all.hi[axis])));
+    }
+    constexpr float small = 20000;  // metres: the margin is then at most 6 cm
+    if (largest < small) {
+        Culling<true>(forest, region, largest, take).run();
+    } else {
+        Culling<false>(forest, region, largest, take).run();
+    }
+}

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "fase/broad/wide/kernels.cpp"
 #include <hwy/foreach_target.h>
 //
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>

@@ -49,4 +49,18 @@ struct WideBox {
         }
         return bits;
     }
+    /// Which children it contains, a bit each.
+    HWY_INLINE std::uint32_t contains(const Node& node) const {
+        std::uint32_t bits = 0;
+        for (int i = 0; i < width; i += lanes) {
+            M hit = hn::Le(plane[0], load(node.plane[0] + i));
+            hit = hn::And(hit, hn::Le(plane[1], load(node.plane[1] + i)));
+            hit = hn::And(hit, hn::Le(plane[2], load(node.plane[2] + i)));
+            hit = hn::And(hit, hn::Le(load(node.plane[3] + i), plane[3]));
+            hit = hn::And(hit, hn::Le(load(node.plane[4] + i), plane[4]));
+            hit = hn::And(hit, hn::Le(load(node.plane[5] + i), plane[5]));
+            bits |= bits_of(hit) << i;
+        }
+        return bits;
+    }
 };
