@@ -3,6 +3,7 @@
 #include "fase/broad/brute_force.hpp"
 #include "fase/broad/bsp.hpp"
 #include "fase/broad/dynamic_bvh.hpp"
+#include "fase/broad/incremental_sweep.hpp"
 #include "fase/broad/kd_tree.hpp"
 #include "fase/broad/loose_octree.hpp"
 #include "fase/broad/octree.hpp"
@@ -20,6 +21,7 @@ template <Structure... S> struct StructureList {};
 using AllStructures = StructureList<  //
     BruteForce,                       //
     SweepAndPrune,                    //
+    IncrementalSweep,                 //
     UniformGrid,                      //
     RowGrid,                          //
     Quadtree,                         //

@@ -53,7 +53,7 @@ private:
     };
 
     BoxColumns boxes_;
-    std::vector<Aabb> around_ = {Aabb{}};                      // level by level, the runs first
+    std::vector<Aabb> around_ = std::vector<Aabb>(1);          // level by level, the runs first
     std::array<std::size_t, most_levels + 1> first_ = {0, 1};  // of each level in around_; behind the last, the end
     std::size_t levels_ = 1;
 
