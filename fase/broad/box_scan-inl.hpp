@@ -111,6 +111,11 @@ struct Others {
     }
 };
 
+/// The lanes below `end`, when they are counted from `first`.
+HWY_INLINE FloatMask first_lanes(std::size_t end, std::size_t first) {
+    return hn::FirstN(FloatTag(), end > first ? end - first : 0);
+}
+
 template <bool Sorted>
 HWY_INLINE void search_behind(const ColumnsView& boxes, std::size_t begin, std::size_t end, std::vector<Pair>& out) {
     const FloatTag d;
@@ -131,11 +136,11 @@ HWY_INLINE void search_behind(const ColumnsView& boxes, std::size_t begin, std::
             const auto hit_a = others.meet<Sorted>(a), hit_b = others.meet<Sorted>(b), hit_c = others.meet<Sorted>(c),
                        hit_e = others.meet<Sorted>(e);
             if (HWY_UNLIKELY(!hn::AllFalse(d, hn::Or(hn::Or(hit_a, hit_b), hn::Or(hit_c, hit_e))))) {
-                const std::size_t not_behind = k == i + 1 ? 1 : 0;  // the others of the group are among the first
+                const std::size_t first = k - i - 1;  // the others of the group are among the first that are tested
                 add(hits[0], boxes, i, k, hit_a);
-                add(hits[1], boxes, i + 1, k, hn::AndNot(hn::FirstN(d, not_behind), hit_b));
-                add(hits[2], boxes, i + 2, k, hn::AndNot(hn::FirstN(d, 2 * not_behind), hit_c));
-                add(hits[3], boxes, i + 3, k, hn::AndNot(hn::FirstN(d, 3 * not_behind), hit_e));
+                add(hits[1], boxes, i + 1, k, hn::AndNot(first_lanes(1, first), hit_b));
+                add(hits[2], boxes, i + 2, k, hn::AndNot(first_lanes(2, first), hit_c));
+                add(hits[3], boxes, i + 3, k, hn::AndNot(first_lanes(3, first), hit_e));
             }
             if constexpr (Sorted) more = hn::AllTrue(d, hn::Le(others.lo_x, farthest));  // false in the padding
         }

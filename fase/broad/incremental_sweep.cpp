@@ -216,14 +216,15 @@ void IncrementalSweep::pair_born() {
     for (const Proxy p : born_) spots_[p].noted = false;
 }
 
-/// False: it takes too long; the lists are in no good state then.
+/// False: it takes too long, or the first of them say that it will; the lists are in no good state then.
 bool IncrementalSweep::shift_moved() {
     const auto most = static_cast<std::size_t>(settings_.patience * static_cast<double>(listed_)) + 4096;
     std::size_t swaps = 0;
-    for (const Proxy p : moved_) {
-        const Aabb to = store_.box(p);
-        for (int axis = 0; axis < 3; ++axis) shift(p, axis, to, swaps);
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+        const Aabb to = store_.box(moved_[i]);
+        for (int axis = 0; axis < 3; ++axis) shift(moved_[i], axis, to, swaps);
         if (swaps > most) return false;
+        if (i % 256 == 255 && swaps / (i + 1) * moved_.size() > 2 * most) return false;
     }
     swaps_since_filled_ += swaps;
     return true;

@@ -21,7 +21,7 @@ public:
 
     /// What may be tuned. The pairs and hits that are reported never depend on it, only their order and the time.
     struct Settings {
-        double patience = 8;  ///< ends that may be passed in one commit, for each box stored, before all is swept anew
+        double patience = 48;  ///< ends that may be passed in one commit, for each box stored, before all is swept anew
     };
 
     IncrementalSweep() = default;

@@ -52,5 +52,39 @@ TEST(BruteForce, FindsWhatTheDefinitionSays) {
     }
 }
 
+TEST(BruteForce, LeavesOutPairsThatRestWhateverTheOrderOfSleepAndDeath) {
+    Random random(7);
+    BruteForce boxes;
+    std::vector<Proxy> alive;
+    Proxy next = 0;
+    for (int step = 0; step < 2000; ++step) {
+        switch (random.below(4)) {
+            case 0: {
+                const float x = random.between(0, 3), y = random.between(0, 3);
+                boxes.insert(next, {{x, y, 0}, {x + 1, y + 1, 1}});
+                alive.push_back(next++);
+                break;
+            }
+            case 1:
+                if (alive.size() < 30) break;
+                std::swap(alive[random.below(alive.size())], alive.back());
+                boxes.erase(alive.back());
+                alive.pop_back();
+                break;
+            default:
+                if (!alive.empty()) boxes.set_awake(alive[random.below(alive.size())], random.below(2) == 0);
+        }
+        ASSERT_EQ(boxes.broken_invariant(), "");
+        if (step % 20 != 0) continue;
+        std::vector<Pair> all, awake;
+        boxes.find_pairs(all);
+        boxes.find_awake_pairs(awake);
+        std::erase_if(all, [&](Pair pair) { return !boxes.is_awake(pair.a) && !boxes.is_awake(pair.b); });
+        std::sort(all.begin(), all.end());
+        std::sort(awake.begin(), awake.end());
+        ASSERT_EQ(awake, all);
+    }
+}
+
 }  // namespace
 }  // namespace fase::broad
