@@ -14,8 +14,11 @@ namespace fase::broad {
 /// half-spaces; NaN; inverted) are kept apart and tested one by one.
 constexpr bool is_ordinary(const Aabb& box) {
     constexpr float far = largest_built;
-    return !is_empty(box) && box.lo.x >= -far && box.lo.y >= -far && box.lo.z >= -far && box.hi.x <= far &&
-           box.hi.y <= far && box.hi.z <= far;
+    // Without branches: this is asked of every box that moves.
+    const int within = int{box.lo.x >= -far} & int{box.lo.y >= -far} & int{box.lo.z >= -far} & int{box.hi.x <= far} &
+                       int{box.hi.y <= far} & int{box.hi.z <= far};
+    const int ordered = int{box.lo.x <= box.hi.x} & int{box.lo.y <= box.hi.y} & int{box.lo.z <= box.hi.z};
+    return (within & ordered) != 0;
 }
 
 /// Two rows of boxes without holes, the ordinary and the odd ones, and where each proxy stands in them. Every change is
@@ -25,16 +28,17 @@ public:
     void insert(Proxy p, const Aabb& box) {
         if (p >= places_.size()) places_.resize(p + std::size_t{1});
         FASE_ASSERT(places_[p].at == nowhere);
-        places_[p].awake = true;
+        places_[p].awake = 1;
         append(p, box);
         changed_ = true;
     }
     void move(Proxy p, const Aabb& box) {
         FASE_ASSERT(holds(p));
-        Place& place = places_[p];
+        const Place place = places_[p];
+        const bool odd = place.odd != 0;
         changed_ = true;
-        if (place.odd == !is_ordinary(box)) {
-            row(place.odd)[place.at].box = box;
+        if (odd == !is_ordinary(box)) {
+            row(odd)[place.at].box = box;
             return;
         }
         take_out(p);
@@ -42,15 +46,15 @@ public:
     }
     void erase(Proxy p) {
         FASE_ASSERT(holds(p));
-        resting_ -= places_[p].awake ? 0 : 1;
+        resting_ -= is_awake(p) ? 0 : 1;
         take_out(p);
         places_[p] = {};
         changed_ = true;
     }
     void set_awake(Proxy p, bool awake) {
         FASE_ASSERT(holds(p));
-        if (places_[p].awake == awake) return;
-        places_[p].awake = awake;
+        if (is_awake(p) == awake) return;
+        places_[p].awake = awake ? 1 : 0;
         resting_ += awake ? std::size_t{0} - 1 : 1;
         awake_changed_ = true;
     }
@@ -62,12 +66,20 @@ public:
         changed_ = true;
     }
 
+    /// Takes room for these boxes, so that inserting them wastes none.
+    void reserve(std::span<const Move> boxes) {
+        Proxy largest = 0;
+        for (const Move& m : boxes) largest = m.proxy > largest ? m.proxy : largest;
+        if (!boxes.empty()) places_.reserve(largest + std::size_t{1});
+        ordinary_.reserve(boxes.size());
+    }
+
     [[nodiscard]] bool holds(Proxy p) const { return p < places_.size() && places_[p].at != nowhere; }
     [[nodiscard]] bool is_awake(Proxy p) const { return places_[p].awake; }
     [[nodiscard]] bool is_odd(Proxy p) const { return places_[p].odd; }
     /// Of a stored proxy: its place in ordinary(), or in odd().
     [[nodiscard]] std::uint32_t place(Proxy p) const { return places_[p].at; }
-    [[nodiscard]] const Aabb& box(Proxy p) const { return (places_[p].odd ? odd_ : ordinary_)[places_[p].at].box; }
+    [[nodiscard]] const Aabb& box(Proxy p) const { return (is_odd(p) ? odd_ : ordinary_)[places_[p].at].box; }
     [[nodiscard]] std::span<const Move> ordinary() const { return ordinary_; }
     [[nodiscard]] std::span<const Move> odd() const { return odd_; }
     [[nodiscard]] std::size_t size() const { return ordinary_.size() + odd_.size(); }
@@ -118,9 +130,9 @@ public:
             if (!holds(p)) continue;
             ++stored;
             resting += is_awake(p) ? 0 : 1;
-            const std::vector<Move>& mine = places_[p].odd ? odd_ : ordinary_;
+            const std::vector<Move>& mine = is_odd(p) ? odd_ : ordinary_;
             if (place(p) >= mine.size() || mine[place(p)].proxy != p) return "a proxy points at another's box";
-            if (is_ordinary(box(p)) == places_[p].odd) return "a box stands in the wrong row";
+            if (is_ordinary(box(p)) == is_odd(p)) return "a box stands in the wrong row";
         }
         if (stored != size()) return "a box has no proxy that points at it";
         if (resting != resting_) return "the resting boxes are miscounted";
@@ -128,10 +140,10 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t nowhere = 0xffffffff;
+    static constexpr std::uint32_t nowhere = 0x3fffffff;
     struct Place {
-        std::uint32_t at = nowhere;
-        bool odd = false, awake = true;
+        std::uint32_t at : 30 = nowhere;
+        std::uint32_t odd : 1 = 0, awake : 1 = 1;
     };
     std::vector<Place> places_;  // by proxy
     std::vector<Move> ordinary_, odd_;
@@ -140,17 +152,19 @@ private:
 
     [[nodiscard]] std::vector<Move>& row(bool odd) { return odd ? odd_ : ordinary_; }
     void append(Proxy p, const Aabb& box) {
-        places_[p].odd = !is_ordinary(box);
-        std::vector<Move>& mine = row(places_[p].odd);
-        places_[p].at = static_cast<std::uint32_t>(mine.size());
+        const bool odd = !is_ordinary(box);
+        std::vector<Move>& mine = row(odd);
+        FASE_ASSERT(mine.size() < nowhere);
+        places_[p].odd = odd ? 1 : 0;
+        places_[p].at = static_cast<std::uint32_t>(mine.size()) & nowhere;
         mine.push_back({p, box});
     }
     /// The last of the row takes the place.
     void take_out(Proxy p) {
-        std::vector<Move>& mine = row(places_[p].odd);
-        const std::uint32_t at = places_[p].at;
+        std::vector<Move>& mine = row(is_odd(p));
+        const std::uint32_t at = place(p);
         mine[at] = mine.back();
-        places_[mine[at].proxy].at = at;
+        places_[mine[at].proxy].at = at & nowhere;
         mine.pop_back();
     }
 };

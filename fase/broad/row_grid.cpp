@@ -12,9 +12,6 @@ namespace {
 
 using row_grid::PairBlock;
 
-/// Records that a task takes at once. Cuts go by count, so that the order of the pairs does not depend on the threads.
-constexpr std::size_t grain = 4096;
-
 /// The pairs of `few`'s records from `begin` to `end` with those of `many`: asked in the order in which they lie, so
 /// that neighbours find their rows in the caches.
 void find_pairs_between(const RowView& few, const RowView& many, std::size_t begin, std::size_t end, PairBlock& out) {
@@ -25,6 +22,38 @@ void find_pairs_between(const RowView& few, const RowView& many, std::size_t beg
         row_grid::find_asked_pairs(many, {std::span(askers).first(count), {}}, out);
     }
 }
+
+/// The search for pairs in parts that tasks take one at a time. Cuts go by count, so that the order of the pairs does
+/// not depend on the threads.
+struct Chunks {
+    static constexpr std::size_t grain = 4096;  // records
+    RowView moving, resting;
+    bool moving_ask;  // the fewer ask the others
+    std::size_t first_resting, first_asking, count;
+
+    Chunks(const RowView& m, const RowView& r, bool resting_too)
+        : moving(m), resting(r), moving_ask(m.count <= r.count) {
+        first_resting = parts(moving);
+        first_asking = first_resting + (resting_too ? parts(resting) : 0);
+        count = first_asking + (many().count == 0 ? 0 : parts(few()));
+    }
+    void find(std::size_t chunk, PairBlock& out) const {
+        if (chunk < first_resting) {
+            row_grid::find_own_pairs(moving, begin(chunk), end(chunk, moving), out);
+        } else if (chunk < first_asking) {
+            row_grid::find_own_pairs(resting, begin(chunk - first_resting), end(chunk - first_resting, resting), out);
+        } else {
+            find_pairs_between(few(), many(), begin(chunk - first_asking), end(chunk - first_asking, few()), out);
+        }
+    }
+
+private:
+    [[nodiscard]] const RowView& few() const { return moving_ask ? moving : resting; }
+    [[nodiscard]] const RowView& many() const { return moving_ask ? resting : moving; }
+    static std::size_t parts(const RowView& set) { return (set.count + grain - 1) / grain; }
+    static std::size_t begin(std::size_t part) { return part * grain; }
+    static std::size_t end(std::size_t part, const RowView& set) { return std::min(set.count, (part + 1) * grain); }
+};
 
 }  // namespace
 
@@ -48,19 +77,17 @@ void RowGrid::commit() {
 
 void RowGrid::build(std::span<const Move> boxes) {
     clear();
+    moving_.boxes.reserve(boxes);
     for (const Move& m : boxes) insert(m.proxy, m.box);
     commit();
 }
 
+/// One chunk after the other, as tasks take them.
 void RowGrid::find(bool resting_too, std::vector<Pair>& out) const {
     find_odd(resting_too, out);
     PairBlock block(out);
-    const RowView moving = moving_.grid.view(), resting = resting_.grid.view();
-    row_grid::find_own_pairs(moving, 0, moving.count, block);
-    if (resting_too) row_grid::find_own_pairs(resting, 0, resting.count, block);
-    const bool moving_ask = moving.count <= resting.count;
-    const RowView &few = moving_ask ? moving : resting, &many = moving_ask ? resting : moving;
-    find_pairs_between(few, many, 0, few.count, block);
+    const Chunks chunks(moving_.grid.view(), resting_.grid.view(), resting_too);
+    for (std::size_t k = 0; k < chunks.count; ++k) chunks.find(k, block);
 }
 
 void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
@@ -80,37 +107,23 @@ void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
 }
 
 void RowGrid::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    const RowView moving = moving_.grid.view(), resting = resting_.grid.view();
-    const bool moving_ask = moving.count <= resting.count;
-    const RowView &few = moving_ask ? moving : resting, &many = moving_ask ? resting : moving;
-    if (tasks.threads() == 1 || moving.count + resting.count <= grain) return find(true, out);
+    const Chunks chunks(moving_.grid.view(), resting_.grid.view(), true);
+    if (tasks.threads() == 1 || chunks.count < 2) return find(true, out);
 
-    const auto chunks = [](const RowView& set) { return (set.count + grain - 1) / grain; };
-    const std::size_t first_resting = chunks(moving), first_asking = first_resting + chunks(resting);
-    const std::size_t asking = many.count == 0 ? 0 : chunks(few);
-    std::vector<std::vector<Pair>> found(first_asking + asking);
-    parallel_ranges(tasks, found.size(), 1, [&](std::size_t k, std::size_t) {
+    std::vector<std::vector<Pair>> found(chunks.count);
+    parallel_ranges(tasks, chunks.count, 1, [&](std::size_t k, std::size_t) {
         PairBlock block(found[k]);
-        const auto range = [&](const RowView& set, std::size_t chunk, auto&& search) {
-            search(chunk * grain, std::min(set.count, (chunk + 1) * grain));
-        };
-        const auto own = [&](const RowView& set) {
-            return [&](std::size_t begin, std::size_t end) { row_grid::find_own_pairs(set, begin, end, block); };
-        };
-        if (k < first_resting) return range(moving, k, own(moving));
-        if (k < first_asking) return range(resting, k - first_resting, own(resting));
-        range(few, k - first_asking,
-              [&](std::size_t begin, std::size_t end) { find_pairs_between(few, many, begin, end, block); });
+        chunks.find(k, block);
     });
     find_odd(true, out);
-    std::size_t total = out.size();
     std::vector<std::size_t> places;
+    std::size_t total = out.size();
     for (const std::vector<Pair>& part : found) {
         places.push_back(total);
         total += part.size();
     }
     out.resize(total);
-    parallel_ranges(tasks, found.size(), 1, [&](std::size_t k, std::size_t) {
+    parallel_ranges(tasks, chunks.count, 1, [&](std::size_t k, std::size_t) {
         std::copy(found[k].begin(), found[k].end(), out.begin() + static_cast<std::ptrdiff_t>(places[k]));
     });
 }

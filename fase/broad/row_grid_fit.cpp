@@ -100,13 +100,13 @@ double spacing_of(const Sample& sample, double count, float side) {
 }
 
 /// Gives the level its cells: of that edge, or of a larger one when there would be more than `most`.
-void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double x_share,
+void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double along,
             double most) {
     std::array<double, 3> counts{};
     for (;; edge *= 1.25) {
         for (std::size_t k = 0; k < 3; ++k) {
             const auto a = static_cast<std::size_t>(axis[k]);
-            counts[a] = std::floor(double{sample.ranges[a].length} / (k == 0 ? edge / x_share : edge)) + 1;
+            counts[a] = std::floor(double{sample.ranges[a].length} / (k == 0 ? edge / along : edge)) + 1;
             if (k > 0 && counts[a] <= 2) counts[a] = 1;
         }
         if (counts[0] * counts[1] * counts[2] <= most) break;
@@ -114,8 +114,7 @@ void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axi
     for (std::size_t a = 0; a < 3; ++a) {
         level.origin[a] = sample.ranges[a].from;
         level.last[a] = static_cast<float>(counts[a] - 1);
-        level.per_cell[a] =
-            counts[a] > 1 ? static_cast<float>((static_cast<int>(a) == axis[0] ? x_share : 1) / edge) : 0;
+        level.per_cell[a] = counts[a] > 1 ? static_cast<float>((static_cast<int>(a) == axis[0] ? along : 1) / edge) : 0;
     }
     const auto at = [&](int k) { return static_cast<std::size_t>(axis[static_cast<std::size_t>(k)]); };
     level.stride[at(0)] = 1;
@@ -170,7 +169,7 @@ RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
             const double most = std::min(double{settings.cells_a_box} * count + 64, 0x1p22);
             // Room for the roundings of cell(): 2^-22 of a cell for each of some thousand rows.
             const double edge = std::max(limit, spacing_of(sample, count, static_cast<float>(limit))) * (1 + 0x1p-9);
-            divide(level, sample, fit.axis, edge, settings.x_share, most);
+            divide(level, sample, fit.axis, edge, std::max(settings.cells_along, 0.01f), most);
         }
         fit.levels.push_back(level);
     }

@@ -1,0 +1,286 @@
+#include "fase/broad/row_grid.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fase/broad/brute_force.hpp"
+#include "fase/broad/find_pairs.hpp"
+#include "fase/broad/stats.hpp"
+#include "fase/core/random.hpp"
+
+namespace fase::broad {
+namespace {
+
+using Rows = RowGrid::Settings::Rows;
+
+Vec3 place(Random& random, float from, float to) {
+    const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
+    return {x, y, z};
+}
+
+/// Boxes of sides 0.5 to 1.5 in a cube, about two neighbours each.
+std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}) {
+    Random random(seed);
+    const float world = std::cbrt(static_cast<float>(count) * 2);
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < count; ++p) {
+        const Vec3 lo = at + place(random, 0, world);
+        boxes.push_back({p, {lo, lo + place(random, 0.5f, 1.5f)}});
+    }
+    return boxes;
+}
+
+std::vector<Pair> found(const RowGrid& grid) {
+    std::vector<Pair> pairs;
+    grid.find_pairs(pairs);
+    return pairs;
+}
+template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
+    std::vector<Pair> pairs;
+    find_pairs(structure, pairs);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+std::vector<Pair> judged(const std::vector<Move>& boxes) {
+    BruteForce judge;
+    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
+    return sorted_pairs(judge);
+}
+RowGrid grid_of(const std::vector<Move>& boxes, const RowGrid::Settings& settings = {}) {
+    RowGrid grid(settings);
+    grid.build(boxes);
+    return grid;
+}
+
+/// Runs `body` once for every instruction set that this machine has, with its name.
+template <class Body> void for_each_target(Body&& body) {
+    for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+        const std::int64_t target = rest & -rest;
+        hwy::SetSupportedTargetsForTest(target);
+        body(hwy::TargetName(target));
+    }
+    hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(RowGrid, FindsTheSamePairsInTheSameOrderWithEveryInstructionSet) {
+    std::vector<Move> boxes = gas(3000, 1);
+    for (Proxy p = 0; p < 200; ++p) boxes[p].box.hi += Vec3{4, 2, 6};  // some on upper levels
+    for (const Rows rows : {Rows::Table, Rows::List}) {
+        std::vector<Pair> first;
+        for_each_target([&](const char* name) {
+            SCOPED_TRACE(name);
+            RowGrid grid = grid_of(boxes, {.rows = rows});
+            for (Proxy p = 1000; p < 1400; ++p) grid.set_awake(p, false);
+            grid.commit();
+            ASSERT_EQ(grid.broken_invariant(), "");
+            const std::vector<Pair> pairs = found(grid);
+            if (first.empty()) first = pairs;
+            EXPECT_TRUE(pairs == first);
+        });
+        std::sort(first.begin(), first.end());
+        EXPECT_EQ(first, judged(boxes));
+    }
+}
+
+TEST(RowGrid, FindsTheSamePairsInTheSameOrderWithAnyNumberOfThreads) {
+    RowGrid grid = grid_of(gas(30000, 2));
+    for (Proxy p = 0; p < 30000; p += 3) grid.set_awake(p, false);
+    grid.insert(30000, Aabb::everything());
+    grid.commit();
+    const std::vector<Pair> serial = found(grid);
+    for (const int threads : {1, 2, 3, 8}) {
+        const auto tasks = make_thread_runner(threads);
+        std::vector<Pair> pairs{{7, 9}};  // what is there stays
+        grid.find_pairs(*tasks, pairs);
+        ASSERT_EQ(pairs.front(), (Pair{7, 9}));
+        pairs.erase(pairs.begin());
+        EXPECT_TRUE(pairs == serial) << threads;
+    }
+}
+
+TEST(RowGrid, FindsEveryPairOfALatticeOfTouchingBoxes) {
+    constexpr std::uint32_t side = 24;
+    for (const Vec3 at : {Vec3{}, Vec3{100000, -100000, 0}, Vec3{-12, -12, -12}}) {
+        std::vector<Move> boxes;
+        for (std::uint32_t k = 0; k < side * side * side; ++k) {
+            const Vec3 lo = at + Vec3{static_cast<float>(k % side), static_cast<float>(k / side % side),
+                                      static_cast<float>(k / side / side)};
+            boxes.push_back({k, {lo, lo + Vec3{1, 1, 1}}});
+        }
+        for (const Rows rows : {Rows::Table, Rows::List}) {
+            const RowGrid grid = grid_of(boxes, {.rows = rows});
+            EXPECT_EQ(grid.broken_invariant(), "");
+            constexpr std::size_t along = 3 * side - 2;  // neighbours of all boxes of a line, themselves among them
+            EXPECT_EQ(found(grid).size(), (along * along * along - boxes.size()) / 2);
+        }
+    }
+}
+
+TEST(RowGrid, TellsTouchingFromJustNotTouching) {
+    const float after_one = std::nextafter(1.0f, 2.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<Move> boxes = gas(500, 3, {50, 50, 50});  // so that there are cells
+        Aabb apart{{0, 0, 0}, {1, 1, 1}}, touching = apart;
+        apart.lo[axis] = after_one;
+        apart.hi[axis] = 2;
+        touching.lo[axis] = 1;
+        touching.hi[axis] = 2;
+        boxes.push_back({500, {{0, 0, 0}, {1, 1, 1}}});
+        boxes.push_back({501, touching});
+        boxes.push_back({502, apart});
+        for (const Rows rows : {Rows::Table, Rows::List}) {
+            const std::vector<Pair> pairs = sorted_pairs(grid_of(boxes, {.rows = rows}));
+            EXPECT_TRUE(std::binary_search(pairs.begin(), pairs.end(), Pair{500, 501}));
+            EXPECT_FALSE(std::binary_search(pairs.begin(), pairs.end(), Pair{500, 502}));
+        }
+    }
+}
+
+TEST(RowGrid, TakesMinusZeroForZero) {
+    std::vector<Move> boxes{{0, {{-1, -1, -1}, {-0.0f, -0.0f, -0.0f}}}, {1, {{0.0f, 0.0f, 0.0f}, {1, 1, 1}}}};
+    for (const Rows rows : {Rows::Table, Rows::List})
+        EXPECT_EQ(found(grid_of(boxes, {.rows = rows})), (std::vector<Pair>{{0, 1}}));
+}
+
+TEST(RowGrid, KeepsItsCellsSmallWhenOneBoxIsFarAway) {
+    std::vector<Move> boxes = gas(8000, 4);
+    const std::size_t usual = stats_of(grid_of(boxes)).largest_leaf;
+    for (const float far : {5e4f, -1e6f, 9e16f}) {
+        boxes[17].box = {{far, far, far}, {far, far, far}};
+        const RowGrid grid = grid_of(boxes);
+        EXPECT_EQ(grid.broken_invariant(), "");
+        EXPECT_LE(stats_of(grid).largest_leaf, 2 * usual);
+        EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+    }
+}
+
+TEST(RowGrid, FollowsAWorldThatDriftsAndGrows) {
+    std::vector<Move> boxes = gas(4000, 5);
+    RowGrid grid = grid_of(boxes);
+    const std::size_t usual = stats_of(grid).largest_leaf;
+    for (int step = 0; step < 150; ++step) {
+        const float growth = step < 75 ? 1.0f : 1.02f;
+        for (Move& m : boxes) {
+            const Vec3 lo = m.box.lo * growth + Vec3{3, -1, 0.5f}, sides = extent(m.box);
+            m.box = {lo, lo + sides};
+            grid.move(m.proxy, m.box);
+        }
+        grid.commit();
+        ASSERT_EQ(grid.broken_invariant(), "");
+        ASSERT_LE(stats_of(grid).largest_leaf, 3 * usual) << step;
+        if (step % 15 == 14) {
+            ASSERT_EQ(sorted_pairs(grid), judged(boxes));
+        }
+    }
+}
+
+TEST(RowGrid, NoticesAtOnceWhenAllBoxesLeapAway) {
+    std::vector<Move> boxes = gas(4000, 6);
+    RowGrid grid = grid_of(boxes);
+    const std::size_t usual = stats_of(grid).largest_leaf;
+    for (Move& m : boxes) {
+        m.box = {m.box.lo + Vec3{7000, 0, 0}, m.box.hi + Vec3{7000, 0, 0}};
+        grid.move(m.proxy, m.box);
+    }
+    grid.commit();
+    EXPECT_LE(stats_of(grid).largest_leaf, 2 * usual);
+    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+}
+
+/// Clusters of a hundred boxes, somewhere in a world of 1000 km.
+std::vector<Move> far_clusters(std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Move> boxes;
+    Vec3 at;
+    for (Proxy p = 0; p < count; ++p) {
+        if (p % 100 == 0) at = place(random, -5e5f, 5e5f);
+        const Vec3 lo = at + place(random, 0, 6);
+        boxes.push_back({p, {lo, lo + place(random, 0.5f, 1.5f)}});
+    }
+    return boxes;
+}
+
+TEST(RowGrid, ListsTheRowsOfAWorldThatIsNearlyEmpty) {
+    const std::vector<Move> boxes = far_clusters(6000, 7);
+    const RowGrid grid = grid_of(boxes);
+    EXPECT_EQ(grid.broken_invariant(), "");
+    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+    EXPECT_LT(stats_of(grid).largest_leaf, 64u) << "a cluster of a hundred lies in one cell";
+}
+
+TEST(RowGrid, TakesMemoryByTheNumberOfBoxesWhereverTheyAre) {
+    Random random(8);
+    std::vector<std::vector<Move>> worlds{gas(20000, 8), far_clusters(20000, 9), far_clusters(20000, 10)};
+    for (Move& m : worlds[2]) {  // dust over 1000 km
+        const Vec3 lo = place(random, -5e5f, 5e5f);
+        m.box = {lo, lo + Vec3{1, 1, 1}};
+    }
+    for (const std::vector<Move>& boxes : worlds) {
+        for (const Rows rows : {Rows::Chosen, Rows::Table}) {
+            const RowGrid grid = grid_of(boxes, {.rows = rows});
+            const bool listed = &boxes == &worlds[1] && rows == Rows::Chosen;  // sorted in three columns beside
+            EXPECT_LE(grid.bytes(), (listed ? 130 : 80) * boxes.size());
+        }
+    }
+}
+
+TEST(RowGrid, AsksOnlyWhereAnAskerReaches) {
+    const std::vector<Move> boxes = gas(5000, 11);
+    const RowGrid grid = grid_of(boxes);
+    std::size_t tested = 0;
+    struct Counting {
+        Aabb box;
+        std::size_t* tested;
+        [[nodiscard]] bool touches(const Aabb& other) const {
+            ++*tested;
+            return overlaps(box, other);
+        }
+        [[nodiscard]] Aabb bounds() const { return box; }
+    };
+    for (const Move& m : boxes) grid.traverse(Counting{m.box, &tested}, [](Proxy, const Aabb&) { return true; });
+    EXPECT_LT(tested, 100 * boxes.size());
+}
+
+/// What a caller may set and store must not be seen in the pairs.
+RC_GTEST_PROP(RowGridProperty, FindsThePairsOfBruteForceWhateverItsSettings, ()) {
+    RowGrid::Settings settings;
+    settings.rows = static_cast<Rows>(*rc::gen::inRange(0, 3));
+    settings.cell = *rc::gen::element(0.0f, 1e-3f, 0.7f, 3.0f, 1e9f);
+    settings.cells_along = *rc::gen::element(0.25f, 1.0f, 3.0f, 20.0f);
+    settings.side_share = *rc::gen::element(0.1f, 1.0f, 5.0f);
+    settings.level_ratio = *rc::gen::element(1.0f, 2.0f, 10.0f);
+    settings.cells_a_box = *rc::gen::element(0.0f, 1.0f, 30.0f);
+    settings.fit_lasts = *rc::gen::inRange(1u, 5u);
+    settings.sample = *rc::gen::inRange(0u, 300u);
+    Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
+    const float world = *rc::gen::element(0.0f, 5.0f, 50.0f, 1e6f);
+    RowGrid grid(settings);
+    std::vector<Move> boxes;
+    const auto count = *rc::gen::inRange<Proxy>(0, 300);
+    const auto draw = [&] {
+        const Vec3 lo = place(random, 0, world), sides = place(random, 0, random.below(8) == 0 ? 20.0f : 1.5f);
+        return Aabb{lo, lo + sides};
+    };
+    for (Proxy p = 0; p < count; ++p) {
+        boxes.push_back({p, draw()});
+        grid.insert(p, boxes.back().box);
+    }
+    for (int step = 0; step < 4; ++step) {
+        grid.commit();
+        RC_ASSERT(grid.broken_invariant() == "");
+        RC_ASSERT(sorted_pairs(grid) == judged(boxes));
+        for (Move& m : boxes) {
+            if (random.below(3) != 0) continue;
+            m.box = draw();
+            grid.move(m.proxy, m.box);
+            if (random.below(2) == 0) grid.set_awake(m.proxy, random.below(2) == 0);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace fase::broad
