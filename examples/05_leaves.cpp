@@ -37,7 +37,10 @@ int main() {
 
     yard.clear();
     fase::Random random(1);
-    for (int i = 0; i < 100; ++i) yard.insert(box_at(random.between(1, 63), random.between(1, 63)), i);
+    for (int i = 0; i < 100; ++i) {
+        const float x = random.between(1, 63), z = random.between(1, 63);
+        yard.insert(box_at(x, z), i);
+    }
     tell("a hundred, spread", yard);
 
     yard.clear();

@@ -35,7 +35,7 @@ int main() {
     walls.insert({{9, 0, 0}, {10, 3, 10}}, {"east wall"});
     walls.commit();  // built here, and never again
 
-    fase::Index<Player> players;
+    fase::Index<Player> players;  // their boxes come with their first move
     players.insert({}, {"red", {2, 1, 5}, {3, 0, 1}});
     players.insert({}, {"blue", {6, 1, 3}, {-0.5f, 0, -1}});
     for (int frame = 0; frame < 180; ++frame) {

@@ -44,7 +44,7 @@ int main() {
     });
     if (!box || !balloon) return 1;
     std::printf("the arrow meets a box after %.3f m and a balloon after %.3f m\n", box->at, balloon->at);
-    std::printf("%d of %zu balloons were tested\n", opened, sky.size());
+    std::printf("%s of %zu balloons were tested\n", opened < 20 ? "fewer than 20" : "too many", sky.size());
 
     const auto seen = fase::frustum_of(camera);
     if (!seen) return std::puts(seen.error().text().c_str()), 1;

@@ -1,4 +1,4 @@
-// One scene, every structure: the same pairs, the same hits; choose by the shape of the world and how often it changes.
+// One scene, many structures: the same pairs, the same hits; choose by the shape of the world and how often it changes.
 #include <cstdio>
 
 #include "fase/broad/any_structure.hpp"
@@ -13,16 +13,14 @@ int main() {
         boxes.push_back({p, {at, at + fase::Vec3{1, 1, 1}}});
     }
     const fase::Ray ray{{-1, 0.5, 40}, {1, 0, 0}, 100};
-    std::size_t first_pairs = 0, different = 0;
-    fase::broad::for_each_structure([&]<fase::broad::Structure S>() {
-        auto structure = *fase::broad::AnyStructure::named(S::info.name);
-        structure.build(boxes);
+    for (const char* name : {"brute_force", "sweep_and_prune", "row_grid", "quadtree", "bsp", "dynamic_bvh"}) {
+        auto structure = fase::broad::AnyStructure::named(name);
+        if (!structure) return std::puts(structure.error().text().c_str()), 1;
+        structure->build(boxes);
         std::vector<fase::broad::Pair> pairs;
-        structure.find_pairs(pairs);
-        const auto hit = fase::query::nearest_hit(structure, ray);
-        std::printf("%-17s %zu pairs, box %u after %.2f m\n", S::info.name.data(), pairs.size(), hit->proxy, hit->at);
-        if (first_pairs == 0) first_pairs = pairs.size();
-        different += pairs.size() == first_pairs ? 0 : 1;
-    });
-    return different == 0 ? 0 : 1;
+        structure->find_pairs(pairs);
+        const auto hit = fase::query::nearest_hit(*structure, ray);
+        if (!hit) return 1;
+        std::printf("%-16s %zu pairs, box %u after %.2f m\n", name, pairs.size(), hit->proxy, hit->at);
+    }
 }

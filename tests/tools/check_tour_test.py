@@ -1,0 +1,42 @@
+"""The check of the tour sees code that is not an example's, and output that is not a program's."""
+import importlib.util
+import unittest
+from pathlib import Path
+
+spec = importlib.util.spec_from_file_location("check_tour", Path(__file__).parents[2] / "tools" / "check_tour.py")
+tour = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(tour)
+
+SOURCES = {"02_a": "int main() {\n    if (true) {\n        go();\n        stay();\n    }\n}\n", "03_b": "b();\n"}
+OUTPUTS = {"02_a": "went\nstayed\n", "03_b": "b\n"}
+
+
+def objections(page):
+    return tour.check(page, SOURCES.get, OUTPUTS.get)[0]
+
+
+class CheckTour(unittest.TestCase):
+    def test_takes_a_part_of_the_example_indented_less(self):
+        self.assertEqual(objections("`examples/02_a.cpp`:\n```cpp\nif (true) {\n    go();\n```\n"), [])
+
+    def test_sees_lines_that_are_left_out_changed_or_cut(self):
+        for code in ["if (true) {\n    stay();\n", "go( );\n", "go()\n", "stay();\ngo();\n"]:
+            with self.subTest(code=code):
+                self.assertEqual(len(objections(f"examples/02_a.cpp\n```cpp\n{code}```\n")), 1)
+
+    def test_judges_by_the_example_that_was_named_last(self):
+        page = "examples/02_a.cpp\nexamples/03_b.cpp\n```cpp\n{}\n```\n"
+        self.assertEqual(objections(page.format("b();")), [])
+        self.assertEqual(len(objections(page.format("go();"))), 1)
+        self.assertEqual(len(objections("```cpp\nb();\n```\n")), 1)
+
+    def test_sees_another_output_and_can_renew_it(self):
+        page = "examples/02_a.cpp\n```text\nwent\n```\nand\n"
+        found, renewed = tour.check(page, SOURCES.get, OUTPUTS.get)
+        self.assertEqual(len(found), 1)
+        self.assertEqual(renewed, "examples/02_a.cpp\n```text\nwent\nstayed\n```\nand\n")
+        self.assertEqual(objections(renewed), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
