@@ -29,7 +29,8 @@ public:
         std::uint32_t index;
         if (free_.empty()) {
             index = static_cast<std::uint32_t>(slots_.size());
-            free_.reserve(slots_.size() + 1);  // so that remove() never allocates
+            // So that remove() never allocates; by doubling, for one more each time would be made anew each time.
+            if (free_.capacity() <= slots_.size()) free_.reserve(2 * slots_.size() + 1);
             slots_.push_back(Slot{1, true});
         } else {
             index = free_.back();

@@ -54,11 +54,14 @@ void insert_sorted(std::vector<std::uint32_t>& list, std::uint32_t value) {
 BodyId make_body(WorldState& state, const BodyDef& def) {
     // All that may run out of memory comes first.
     const std::size_t slots = state.body_ids.size() + 1;
-    state.bodies.traits.reserve(slots);
-    state.bodies.motion.reserve(slots);
-    state.bodies.forces.reserve(slots);
-    state.awake.reserve(slots);
-    state.asleep.reserve(slots);
+    const auto make_room = [&](auto& array) {  // by doubling: one more each time would copy all each time
+        if (array.capacity() < slots) array.reserve(2 * slots);
+    };
+    make_room(state.bodies.traits);
+    make_room(state.bodies.motion);
+    make_room(state.bodies.forces);
+    make_room(state.awake);
+    make_room(state.asleep);
     const BodyId id = state.body_ids.add();
     state.bodies.resize(state.body_ids.size());
     dynamics::BodyTraits traits;

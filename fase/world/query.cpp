@@ -68,13 +68,13 @@ Aabb around_position(const Shape& shape, const Pose& pose) {
 
 Result<std::optional<RayHit>> cast_ray(const World& world, const Ray& ray, const QueryFilter& filter) {
     using Answer = Result<std::optional<RayHit>>;
-    if (auto checked = check_ray(ray, "cast_ray: ray"); !checked) return checked.error();
+    if (!is_ray(ray)) return wrong_ray(ray, "cast_ray: ray");
     return asked<Answer>(world, "cast_ray",
                          [&](const WorldState& state) -> Answer { return nearest_on(state, ray, filter); });
 }
 
 Result<bool> any_hit(const World& world, const Ray& ray, const QueryFilter& filter) {
-    if (auto checked = check_ray(ray, "any_hit: ray"); !checked) return checked.error();
+    if (!is_ray(ray)) return wrong_ray(ray, "any_hit: ray");
     return asked<Result<bool>>(world, "any_hit", [&](const WorldState& state) -> Result<bool> {
         bool any = false;
         along(state, ray, {}, {}, [&](std::uint32_t collider, float) {
@@ -86,7 +86,7 @@ Result<bool> any_hit(const World& world, const Ray& ray, const QueryFilter& filt
 }
 
 Result<void> cast_ray_all(const World& world, const Ray& ray, const QueryFilter& filter, std::vector<RayHit>& out) {
-    if (auto checked = check_ray(ray, "cast_ray_all: ray"); !checked) return checked;
+    if (!is_ray(ray)) return wrong_ray(ray, "cast_ray_all: ray");
     return asked<Result<void>>(world, "cast_ray_all", [&](const WorldState& state) -> Result<void> {
         struct Entry {
             Least key;
@@ -110,7 +110,7 @@ Result<void> cast_ray_all(const World& world, const Ray& ray, const QueryFilter&
 Result<void> cast_rays(const World& world, std::span<const Ray> rays, const QueryFilter& filter,
                        std::vector<std::optional<RayHit>>& out) {
     for (std::size_t i = 0; i < rays.size(); ++i)
-        if (auto checked = check_ray(rays[i], "cast_rays: rays[" + std::to_string(i) + "]"); !checked) return checked;
+        if (!is_ray(rays[i])) return wrong_ray(rays[i], "cast_rays: rays[" + std::to_string(i) + "]");
     return asked<Result<void>>(world, "cast_rays", [&](const WorldState& state) -> Result<void> {
         constexpr std::size_t rays_a_task = 64;
         const std::size_t first = out.size();

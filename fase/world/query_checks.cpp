@@ -4,9 +4,9 @@
 namespace fase::world_queries {
 
 Result<void> check_direction(Vec3 direction, const std::string& where) {
-    const double squared = length_squared(to_double(direction));
-    if (squared > 0.9998 && squared < 1.0002) return {};
-    return refused(where, "a vector of length " + std::to_string(std::sqrt(squared)), "length 1", "normalise it");
+    if (is_direction(direction)) return {};
+    return refused(where, "a vector of length " + std::to_string(length(to_double(direction))), "length 1",
+                   "normalise it");
 }
 
 Result<void> check_length(float length, const std::string& where) {
@@ -14,10 +14,10 @@ Result<void> check_length(float length, const std::string& where) {
     return refused(where, std::to_string(length), "0 or more metres");
 }
 
-Result<void> check_ray(const Ray& ray, const std::string& where) {
-    if (auto r = check_position(ray.origin, where + ".origin"); !r) return r;
-    if (auto r = check_direction(ray.direction, where + ".direction"); !r) return r;
-    return check_length(ray.length, where + ".length");
+Error wrong_ray(const Ray& ray, const std::string& where) {
+    if (auto r = check_position(ray.origin, where + ".origin"); !r) return r.error();
+    if (auto r = check_direction(ray.direction, where + ".direction"); !r) return r.error();
+    return refused(where + ".length", std::to_string(ray.length), "0 or more metres");
 }
 
 Result<void> check_placed(const Shape& shape, const Pose& pose, const std::string& where) {

@@ -10,10 +10,23 @@
 
 namespace fase::world_queries {
 
+/// Of length 1 to 1e-4: what is in metres then is.
+[[nodiscard]] inline bool is_direction(Vec3 v) {
+    const double squared = length_squared(to_double(v));
+    return squared > 0.9998 && squared < 1.0002;
+}
+/// Whether a world takes such a ray: asked for every ray, so it makes no words.
+[[nodiscard]] inline bool is_ray(const Ray& ray) {
+    const Vec3d size = abs(ray.origin);
+    return size.x <= farthest && size.y <= farthest && size.z <= farthest && is_direction(ray.direction) &&
+           ray.length >= 0;
+}
+
 // Each names the field when it refuses: "cast_ray: ray.direction".
 Result<void> check_direction(Vec3 direction, const std::string& where);
 Result<void> check_length(float length, const std::string& where);
-Result<void> check_ray(const Ray& ray, const std::string& where);
+/// The Error of a ray that is none.
+[[nodiscard]] Error wrong_ray(const Ray& ray, const std::string& where);
 Result<void> check_placed(const Shape& shape, const Pose& pose, const std::string& where);
 /// Not finite, or nothing can be inside; one without any plane too, for nobody means to see everything that way.
 Result<void> check_frustum(const Frustum& frustum, const std::string& where);

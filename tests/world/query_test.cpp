@@ -397,6 +397,18 @@ TEST_P(EveryStructure, asked_or_not_goes_on_to_the_same_bits) {
 INSTANTIATE_TEST_SUITE_P(Query, EveryStructure, testing::ValuesIn(structures()),
                          [](const auto& structure) { return structure.param; });
 
+TEST(Query, a_mass_given_far_away_leaves_boxes_around_their_shapes) {
+    Settings tight;
+    tight.speculative_distance = 0;
+    for (const BodyKind kind : {BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic}) {
+        World world = make_world(tight);
+        const BodyId body = add(world, {.kind = kind}, Box{{1, 1, 1}});
+        ASSERT_TRUE(world.set_mass(body, MassProperties{1, {1.2e5f, 3.4e5f, 5.6e5f}, Mat3::diagonal({1, 2, 2.5f})}));
+        const Seen seen = all_of(world)[0];
+        EXPECT_TRUE(contains(world.state().boxes[0], bounds(*seen.shape, seen.pose)));
+    }
+}
+
 TEST(Query, ties_go_to_the_smaller_index) {
     for (const std::string& name : structures()) {
         World world = make_world({}, {.structure = name});
