@@ -63,6 +63,20 @@ TEST(Octree, ReportsTheSameForAnySettings) {
     }
 }
 
+/// Needles as long as the world: each cut across them saves tests, and doubles the entries.
+TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
+    Random random(5);
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < 4000; ++p) {
+        const Vec3 at = place(random, 100);
+        boxes.push_back({p, {{0, at.y, at.z}, {100, at.y + 1e-3f, at.z + 1e-3f}}});
+    }
+    Octree tree(Octree::Settings{.capacity = 1});
+    expect_like_brute_force(tree, boxes);
+    EXPECT_LE(stats_of(tree).entries, Octree::most_entries * boxes.size());
+    EXPECT_GT(stats_of(tree).entries, Octree::most_entries / 2 * boxes.size()) << "the limit is not put to the test";
+}
+
 /// More boxes in one leaf than are tested in one go, awake and not.
 TEST(Octree, TestsLeavesOfAnySize) {
     Random random(4);
