@@ -13,7 +13,10 @@ public:
     struct Key {
         CellPlace at{};
         std::int32_t level = 0;
-        friend constexpr bool operator==(const Key&, const Key&) = default;
+        /// Written out: compilers make a call of the comparison of arrays.
+        friend constexpr bool operator==(const Key& a, const Key& b) {
+            return a.at[0] == b.at[0] && a.at[1] == b.at[1] && a.at[2] == b.at[2] && a.level == b.level;
+        }
     };
     static constexpr std::uint32_t none = 0xffffffff;
 

@@ -121,22 +121,28 @@ void UniformGrid::fill_cells() {
         cell.end_of_askers += sum;
         sum += std::exchange(cell.end, sum);
     }
+    filled_.resize(entering_.size());
+    for (const Entry& entry : entering_) filled_[cells_[entry.cell].end++] = {entry.place, entry.marks};
     entries_.resize(entering_.size());
     marks_.resize(entering_.size() + BoxColumns::padding);
     homes_.assign(cells_.size(), Aabb{});
-    for (const Entry& entry : entering_) {
-        const Move& m = store_.ordinary()[entry.place];
-        const std::uint32_t at = cells_[entry.cell].end++;
-        entries_.put(at, m.proxy, m.box);
-        marks_[at] = entry.marks;
-        if (entry.marks == all_marks) homes_[entry.cell] = merge(homes_[entry.cell], m.box);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        Aabb home;
+        for (std::uint32_t at = cells_[i].first; at < cells_[i].end; ++at) {
+            const Move& m = store_.ordinary()[filled_[at].place];
+            entries_.put(at, m.proxy, m.box);
+            marks_[at] = filled_[at].marks;
+            if (marks_[at] == all_marks) home = merge(home, m.box);
+        }
+        homes_[i] = home;
     }
 }
 
 std::size_t UniformGrid::bytes() const {
     return sizeof(*this) + store_.bytes() + table_.bytes() + cells_.capacity() * sizeof(ScanRange) +
            homes_.capacity() * sizeof(Aabb) + entries_.bytes() + marks_.capacity() * sizeof(std::uint32_t) +
-           level_of_.capacity() + large_.capacity() * sizeof(Move) + entering_.capacity() * sizeof(Entry);
+           level_of_.capacity() + large_.capacity() * sizeof(Move) + entering_.capacity() * sizeof(Entry) +
+           filled_.capacity() * sizeof(Filled);
 }
 
 void UniformGrid::cells(std::vector<DrawnCell>& out) const {

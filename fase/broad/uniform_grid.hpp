@@ -96,6 +96,10 @@ private:
         std::uint32_t marks = 0;  // bit k: the cell is the box's first on axis k
     };
 
+    struct Filled {
+        std::uint32_t place = 0, marks = 0;
+    };
+
     Settings settings_;
     BoxStore store_;
     std::array<Level, most_levels> levels_;
@@ -107,7 +111,8 @@ private:
     std::vector<std::uint32_t> marks_;    // of the same place
     std::vector<std::uint8_t> level_of_;  // by place in store_.ordinary(); most_levels: in large_
     std::vector<Move> large_;
-    std::vector<Entry> entering_;  // scratch of commit()
+    std::vector<Entry> entering_;  // scratch of commit(), in the order of the boxes
+    std::vector<Filled> filled_;   // scratch of commit(), in the order of entries_
 
     [[nodiscard]] GridFrame fitting_frame() const;
     void enter_boxes(bool awake);
