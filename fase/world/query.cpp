@@ -142,7 +142,9 @@ Result<std::optional<ShapeHit>> cast_shape(const World& world, const Shape& shap
         narrow::ShapeOnShape touch;
         along(state, ray, carried.lo, carried.hi, [&](std::uint32_t collider, float entry) {
             if (!is_seen(state, filter, collider)) return limit_of(ray, least);
-            const auto hit = narrow::cast_shape(shape, pose, direction, length, shape_of(state, collider),
+            // What is behind the least for sure ends with its first distance; what may be as near gets all it needs.
+            const float to = std::min(length, float_above(least.at * (1 + 1e-6) + 1e-3));
+            const auto hit = narrow::cast_shape(shape, pose, direction, to, shape_of(state, collider),
                                                 world_pose(state, state.colliders[collider]));
             if (hit) {
                 const Least here{std::max(hit->at, double(entry)), collider};

@@ -52,7 +52,7 @@ public:
     Result<void> remove_body(BodyId body);
     Result<void> remove_collider(ColliderId collider);
 
-    // Reading.
+    // Reading. What is where (rays, overlaps, views, nearest): world/query.hpp.
     [[nodiscard]] bool contains(BodyId body) const;
     [[nodiscard]] bool contains(ColliderId collider) const;
     Result<BodyState> body(BodyId body) const;
