@@ -21,8 +21,7 @@ struct alignas(64) TriangleBlock {
 /// that triangles share by equal coordinates meets one of them. Triangles without surface are never met. Tests are in
 /// float, with the way from the ray's origin to the corners rounded once; the same bits on every processor. All const
 /// calls are safe from any number of threads. About 60 bytes a triangle.
-/// Sources: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher 2012, 3D rasterization (the edge functions); Woop,
-/// Benthin, Wald 2013, Watertight ray/triangle intersection.
+/// Source: Woop, Benthin, Wald 2013, Watertight ray/triangle intersection.
 class RayMesh {
 public:
     /// `indices`: three a triangle. Errors: BadArgument for a number of indices that is no multiple of three, an index

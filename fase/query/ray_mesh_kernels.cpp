@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <limits>
 
 #include "fase/query/ray_mesh_kernels.hpp"
 
