@@ -72,6 +72,8 @@ void IncrementalSweep::sort_out_noted() {
 
 bool IncrementalSweep::worth_trying() const {
     if (born_.size() > 16 + listed_ / 256 || dead_.size() > 16 + listed_ / 4) return false;
+    constexpr double ends_a_move = 32;  // what a box costs that moves but passes nothing
+    if (ends_a_move * static_cast<double>(moved_.size()) > most_swaps()) return false;
     return pause_ == 0 || moved_.size() < hopeless_ / 2;
 }
 
@@ -218,7 +220,7 @@ void IncrementalSweep::pair_born() {
 
 /// False: it takes too long, or the first of them say that it will; the lists are in no good state then.
 bool IncrementalSweep::shift_moved() {
-    const auto most = static_cast<std::size_t>(settings_.patience * static_cast<double>(listed_)) + 4096;
+    const auto most = static_cast<std::size_t>(most_swaps());
     std::size_t swaps = 0;
     for (std::size_t i = 0; i < moved_.size(); ++i) {
         const Aabb to = store_.box(moved_[i]);

@@ -113,6 +113,7 @@ private:
     void note(Proxy p);
     void sort_out_noted();
     [[nodiscard]] bool worth_trying() const;
+    [[nodiscard]] double most_swaps() const { return settings_.patience * static_cast<double>(listed_) + 4096; }
     void sweep_anew();
     void fill_tree_from_lists();
     void make_lists();
