@@ -150,7 +150,7 @@ TEST(UniformGrid, LeadsRaysAndPointsPastMostBoxes) {
 
 TEST(GridWalk, MeetsEveryCellThatTheRayComesThrough) {
     Random random(8);
-    CellFrame frame;
+    GridFrame frame;
     frame.origin = {0.3, -0.7, 100};
     frame.side = 0.7;
     frame.inverse = 1 / frame.side;
