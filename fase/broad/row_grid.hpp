@@ -20,9 +20,9 @@ namespace fase::broad {
 /// that its bounds reach. Memory is bounded by the number of boxes, wherever they are.
 class RowGrid {
 public:
-    static constexpr StructureInfo info{"row_grid",
-                                        "grid of several levels, boxes sorted in rows, tested a vector at a time",
-                                        "folklore; sizes in levels: Mirtich 1996, hierarchical spatial hashing"};
+    static constexpr StructureInfo info{
+        "row_grid", "grid of several levels, boxes sorted in rows, tested a vector at a time",
+        "folklore; boxes in levels by size: Mirtich 1996, Impulse-based dynamic simulation"};
 
     using Settings = RowGridSettings;
 

@@ -12,21 +12,7 @@ float longest_side(const Aabb& box) {
     return std::max(e.x, std::max(e.y, e.z));
 }
 
-/// Where most lower corners lie along an axis.
-struct Range {
-    float from = 0, length = 0;
-};
-
-struct Sample {
-    std::size_t boxes = 0;     // how many it stands for
-    std::vector<float> sides;  // longest ones, in order
-    std::array<Range, 3> ranges;
-    float spread_share = 1;  // share of the places that a uniform spread would fill which are filled
-
-    [[nodiscard]] float side_at(double share) const {
-        return sides[static_cast<std::size_t>(share * static_cast<double>(sides.size() - 1))];
-    }
-};
+using Range = RowSample::Range;
 
 /// All but the outermost in 64 lie in it, with some room beside them: one box far away does not stretch the grid.
 Range main_range(std::vector<float>& sorted) {
@@ -38,14 +24,15 @@ Range main_range(std::vector<float>& sorted) {
 }
 
 /// Lays a coarse grid with a cell a box over the sample and counts the cells that are taken.
-float share_of_places(const std::vector<std::array<float, 3>>& corners, const Sample& sample,
-                      std::array<bool, 3> wide) {
+float share_of_places(RowSample& sample, std::array<bool, 3> wide) {
+    const std::vector<std::array<float, 3>>& corners = sample.corners;
     const int dimensions = int{wide[0]} + int{wide[1]} + int{wide[2]};
     if (corners.size() < 256 || dimensions == 0) return 1;
     std::size_t side = 1;
     const auto power = [&](std::size_t s) { return dimensions == 1 ? s : dimensions == 2 ? s * s : s * s * s; };
     while (power(side + 1) <= corners.size()) ++side;
-    std::vector<bool> taken(power(side));
+    std::vector<std::uint8_t>& taken = sample.taken;
+    taken.assign(power(side), 0);
     std::size_t places = 0;
     for (const std::array<float, 3>& corner : corners) {
         std::size_t at = 0;
@@ -55,39 +42,38 @@ float share_of_places(const std::vector<std::array<float, 3>>& corners, const Sa
             const auto k = static_cast<std::size_t>(std::clamp(t, 0.0f, 1.0f) * static_cast<float>(side));
             at = at * side + std::min(k, side - 1);
         }
-        places += taken[at] ? 0 : 1;
-        taken[at] = true;
+        places += taken[at] != 0 ? 0 : 1;
+        taken[at] = 1;
     }
     constexpr double filled_by_chance = 0.632;  // 1 - 1/e
     return static_cast<float>(
         std::min(1.0, static_cast<double>(places) / (filled_by_chance * static_cast<double>(taken.size()))));
 }
 
-Sample take_sample(std::span<const Move> boxes, std::size_t most) {
-    Sample sample;
+void take_sample(std::span<const Move> boxes, std::size_t most, RowSample& sample) {
     sample.boxes = boxes.size();
+    sample.sides.clear();
+    sample.corners.clear();
+    for (std::vector<float>& along : sample.sorted) along.clear();
     const std::size_t count = std::min(boxes.size(), most);
-    std::vector<std::array<float, 3>> corners;
-    std::array<std::vector<float>, 3> sorted;
     for (std::size_t i = 0; i < count; ++i) {
         const Aabb& box = boxes[i * boxes.size() / count].box;
         sample.sides.push_back(longest_side(box));
-        corners.push_back({box.lo.x, box.lo.y, box.lo.z});
-        for (std::size_t a = 0; a < 3; ++a) sorted[a].push_back(corners.back()[a]);
+        sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
+        for (std::size_t a = 0; a < 3; ++a) sample.sorted[a].push_back(sample.corners.back()[a]);
     }
     std::sort(sample.sides.begin(), sample.sides.end());
     std::array<bool, 3> wide{};
     for (std::size_t a = 0; a < 3; ++a) {
-        std::sort(sorted[a].begin(), sorted[a].end());
-        sample.ranges[a] = main_range(sorted[a]);
+        std::sort(sample.sorted[a].begin(), sample.sorted[a].end());
+        sample.ranges[a] = main_range(sample.sorted[a]);
         wide[a] = sample.ranges[a].length > 4 * sample.side_at(0.98);
     }
-    sample.spread_share = share_of_places(corners, sample, wide);
-    return sample;
+    sample.spread_share = share_of_places(sample, wide);
 }
 
 /// Mean distance of `count` boxes that fill the ranges which are wider than a few `side`; 0 when none is.
-double spacing_of(const Sample& sample, double count, float side) {
+double spacing_of(const RowSample& sample, double count, float side) {
     double volume = 1;
     int dimensions = 0;
     for (const Range& range : sample.ranges) {
@@ -100,7 +86,7 @@ double spacing_of(const Sample& sample, double count, float side) {
 }
 
 /// Gives the level its cells: of that edge, or of a larger one when there would be more than `most`.
-void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axis, double edge, double along,
+void divide(RowLevel& level, const RowSample& sample, const std::array<int, 3>& axis, double edge, double along,
             double most) {
     std::array<double, 3> counts{};
     for (;; edge *= 1.25) {
@@ -123,7 +109,7 @@ void divide(RowLevel& level, const Sample& sample, const std::array<int, 3>& axi
 }
 
 /// Rows run along the longest axis, along the first unless another is clearly longer.
-std::array<int, 3> axes_for(const Sample& sample) {
+std::array<int, 3> axes_for(const RowSample& sample) {
     int longest = 0;
     for (int a = 1; a < 3; ++a)
         if (sample.ranges[static_cast<std::size_t>(a)].length >
@@ -134,10 +120,11 @@ std::array<int, 3> axes_for(const Sample& sample) {
 
 }  // namespace
 
-RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
-    RowFit fit;
-    if (boxes.empty()) return fit;
-    const Sample sample = take_sample(boxes, std::max(settings.sample, 1u));
+void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+    fit.levels.clear();
+    fit.table = 0;
+    if (boxes.empty()) return;
+    take_sample(boxes, std::max(settings.sample, 1u), sample);
     fit.axis = axes_for(sample);
 
     // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
@@ -181,7 +168,6 @@ RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings) {
         level.table = fit.table;
         fit.table += level.cells(0) * level.cells(1) * level.cells(2) + 1;
     }
-    return fit;
 }
 
 }  // namespace fase::broad

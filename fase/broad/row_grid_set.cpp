@@ -31,7 +31,10 @@ template <class Item, class Key> void sort_by_digit(std::vector<Item>& items, st
 }  // namespace
 
 void RowSet::fit(std::span<const Move> boxes, const RowGridSettings& settings) {
-    fit_ = fit_rows(boxes, settings);
+    fit_rows(boxes, settings, sample_, fit_);
+    // Room for other cells too, so that choosing anew seldom asks for memory.
+    if (table_.capacity() < fit_.table) table_.reserve(fit_.table + fit_.table / 4);
+    fit_.levels.reserve(16);
     fitted_count_ = boxes.size();
     age_ = 0;
     stale_ = false;
@@ -137,7 +140,8 @@ std::size_t RowSet::bytes() const {
     for (const std::vector<float>& column : columns_) columns += column.capacity() * sizeof(float);
     return columns + proxies_.capacity() * sizeof(Proxy) + table_.capacity() * sizeof(std::uint32_t) +
            rows_.capacity() * sizeof(ListedRow) + fit_.levels.capacity() * sizeof(RowLevel) +
-           (items_.capacity() + items_scratch_.capacity()) * sizeof(RowItem);
+           (items_.capacity() + items_scratch_.capacity()) * sizeof(RowItem) +
+           sample_.corners.capacity() * (sizeof sample_.corners[0] + 4 * sizeof(float)) + sample_.taken.capacity();
 }
 
 std::string RowSet::broken_record(const RowLevel& level, std::size_t i) const {

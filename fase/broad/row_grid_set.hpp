@@ -68,8 +68,28 @@ struct RowFit {
     std::uint32_t table = 0;           ///< size of the table of all levels
 };
 
+/// What levels and cells are chosen from; kept from one choice to the next for its memory alone.
+struct RowSample {
+    /// Where most lower corners lie along an axis.
+    struct Range {
+        float from = 0, length = 0;
+    };
+    std::size_t boxes = 0;                      ///< how many it stands for
+    std::vector<std::array<float, 3>> corners;  ///< lower ones
+    std::vector<float> sides;                   ///< longest ones, in order
+    std::array<std::vector<float>, 3> sorted;   ///< corners by axis, in order
+    std::array<Range, 3> ranges;
+    float spread_share = 1;  ///< of the places that as many boxes spread evenly would take: how many are taken
+    std::vector<std::uint8_t> taken;
+
+    /// No longer than this is the given share of the longest sides.
+    [[nodiscard]] float side_at(double share) const {
+        return sides[static_cast<std::size_t>(share * static_cast<double>(sides.size() - 1))];
+    }
+};
+
 /// Chooses from a sample of the boxes, which must be ordinary. O(sample log sample).
-[[nodiscard]] RowFit fit_rows(std::span<const Move> boxes, const RowGridSettings& settings);
+void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
 
 /// A row of a listed level that holds a box: its boxes run to the first of the next row.
 struct ListedRow {
@@ -121,6 +141,7 @@ private:
         std::uint32_t x, order;
     };
     std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
+    RowSample sample_;                            // scratch of fit
 
     void fit(std::span<const Move> boxes, const RowGridSettings& settings);
     void make_room();
