@@ -179,7 +179,7 @@ CellLayers cell_layers(const BoxPicture& picture, const Page& page) {
                        depth_colour(share));
         fmt::format_to(std::back_inserter(layers.lines),
                        "<use href=\"#depth{}\" stroke=\"{}\" stroke-opacity=\"{:.2f}\" stroke-width=\"{:.1f}\"/>\n",
-                       depth, depth_colour(share), 0.95 - 0.45 * share, 2.0 - 1.3 * share);
+                       depth, depth_colour(share), 0.95 - 0.3 * share, 2.0 - 1.1 * share);
     }
     return layers;
 }
