@@ -138,6 +138,22 @@ void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
     });
 }
 
+void AnyStructure::traverse(const BoxRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+}
+
+void AnyStructure::traverse(const FrustumRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+}
+
+void AnyStructure::traverse(const Everything& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+}
+
+void AnyStructure::traverse_any(const AnyRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+}
+
 void AnyStructure::nearest_first(const RayMeasure& measure, float limit,
                                  FunctionRef<float(Proxy, const Aabb&, float)> visit) const {
     std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, structure_);

@@ -50,11 +50,16 @@ public:
     void find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const;
     /// Appends the proxies of the stored boxes that overlap `box`, in the structure's own order.
     void overlapping(const Aabb& box, std::vector<Proxy>& out) const;
-    /// As Structure::traverse: `visit(proxy, box)` returns false to stop.
+    /// As Structure::traverse: `visit(proxy, box)` returns false to stop. Compiled once for these regions: an indirect
+    /// call for each box that is visited, none for nodes.
+    void traverse(const BoxRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
+    void traverse(const FrustumRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
+    void traverse(const Everything& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
+    /// For any other region: an indirect call a node more.
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
-        std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+        const auto touches = [&region](const Aabb& box) { return region.touches(box); };
+        traverse_any(AnyRegion(touches, region.bounds()), visit);
     }
-
     /// As broad::nearest_first(), compiled once: an indirect call for each box that is visited, none for nodes.
     void nearest_first(const RayMeasure& measure, float limit,
                        FunctionRef<float(Proxy, const Aabb&, float)> visit) const;
@@ -80,6 +85,19 @@ private:
     template <class> struct VariantOf;
     template <class... S> struct VariantOf<StructureList<S...>> { using type = std::variant<S...>; };
     VariantOf<AllStructures>::type structure_;
+
+    /// A region of a type that is not known here.
+    class AnyRegion {
+    public:
+        AnyRegion(FunctionRef<bool(const Aabb&)> touches, const Aabb& bounds) : touches_(touches), bounds_(bounds) {}
+        [[nodiscard]] bool touches(const Aabb& box) const { return touches_(box); }
+        [[nodiscard]] Aabb bounds() const { return bounds_; }
+
+    private:
+        FunctionRef<bool(const Aabb&)> touches_;
+        Aabb bounds_;
+    };
+    void traverse_any(const AnyRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
 };
 
 }  // namespace fase::broad
