@@ -14,7 +14,11 @@ template <broad::Searchable S, broad::SolidRegion R>
 void cull(const S& structure, const R& region, std::vector<broad::Proxy>& inside,
           std::vector<broad::Proxy>* partly = nullptr) {
     broad::cull(structure, region, [&](std::span<const broad::Proxy> proxies, bool whole) {
-        inside.insert(inside.end(), proxies.begin(), proxies.end());
+        if (proxies.size() == 1) {
+            inside.push_back(proxies.front());
+        } else {
+            inside.insert(inside.end(), proxies.begin(), proxies.end());
+        }
         if (!whole && partly != nullptr) partly->insert(partly->end(), proxies.begin(), proxies.end());
     });
 }
