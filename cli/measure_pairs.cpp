@@ -171,6 +171,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     }
     figures.frames = times.size();
     figures.ms = bench::timing_of(times);
+    if (!times.empty()) figures.least_ms = *std::min_element(times.begin(), times.end());
     figures.hash = hash.value();
     figures.bytes = finder.bytes();
     if (!survey.judged.empty()) figures.right = right;

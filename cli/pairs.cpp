@@ -24,11 +24,11 @@ std::string json_of(const PairFigures& row) {
     if (row.skipped.empty()) {
         text += fmt::format(
             "\"frames\": {}, \"build_ms\": {:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": "
-            "{:.6g}}}, "
+            "{:.6g}, \"least\": {:.6g}}}, "
             "\"pairs_first\": {}, \"pairs_last\": {}, \"pairs_sum\": {}, \"hash\": \"{:016x}\", \"bytes\": {}, "
             "\"checked\": {}, ",
-            row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.pairs_first, row.pairs_last,
-            row.pairs_sum, row.hash, row.bytes, row.right ? (*row.right ? "true" : "false") : "null");
+            row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.least_ms, row.pairs_first,
+            row.pairs_last, row.pairs_sum, row.hash, row.bytes, row.right ? (*row.right ? "true" : "false") : "null");
     } else {
         for (const char* key :
              {"frames", "build_ms", "ms", "pairs_first", "pairs_last", "pairs_sum", "hash", "bytes", "checked"})

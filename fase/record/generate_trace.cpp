@@ -53,7 +53,10 @@ Result<MadeTrace> generate_trace(std::string_view kind, const TraceSettings& set
         if (stage.frame > 0) rule->move(stage);
         boxes.clear();
         for (const TraceBody& body : stage.bodies) boxes.push_back({body.at - body.half, body.at + body.half});
-        if (Result<void> added = writer->add_frame(boxes); !added) return added.error();
+        if (Result<void> added = writer->add_frame(boxes); !added) {
+            writer->discard();
+            return added.error();
+        }
     }
     if (Result<void> finished = writer->finish(flags); !finished) return finished.error();
     return made;

@@ -162,7 +162,12 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 }
 
 OutputFile::~OutputFile() {
-    if (handle_ >= 0 && !direct_ && bytes_ == 0 && is_same_file(handle_, path_.c_str())) ::unlink(path_.c_str());
+    if (bytes_ == 0) discard();
+    close();
+}
+
+void OutputFile::discard() {
+    if (handle_ >= 0 && !direct_ && is_same_file(handle_, path_.c_str())) ::unlink(path_.c_str());
     close();
 }
 

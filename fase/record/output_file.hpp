@@ -31,6 +31,8 @@ public:
     /// Gives the file its name, in place of any file that had it.
     /// @param durable also forces file and folder to the disk.
     Result<void> complete(bool durable);
+    /// Closes and takes the file away, unless it is complete, a device or a pipe.
+    void discard();
     /// Bytes appended.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
     /// A device or a pipe: written directly, never again.

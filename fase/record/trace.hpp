@@ -78,6 +78,8 @@ public:
     /// unknown ones, and static ones of bodies that moved.
     /// @param durable also forces it to the disk
     Result<void> finish(std::span<const std::uint8_t> flags, bool durable = false);
+    /// Takes the unfinished file away.
+    void discard() { file_.discard(); }
 
     [[nodiscard]] std::size_t boxes() const { return boxes_; }
     [[nodiscard]] std::uint32_t frames() const { return frames_; }

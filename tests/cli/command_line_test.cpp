@@ -11,7 +11,7 @@ TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
     const Outcome help = run_fase({"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* command : {"run", "view", "info", "generate", "distance"}) {
+    for (const char* command : {"run", "view", "info", "generate", "distance", "pairs", "query"}) {
         EXPECT_NE(help.out.find(std::string("\n  ") + command), std::string::npos) << command;
         const Outcome own = run_fase({command, "--help"});
         EXPECT_EQ(own.code, 0);
@@ -22,7 +22,7 @@ TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
 
 TEST(CommandLine, EachExampleOfTheHelpIsAccepted) {
     // Commands are only taken apart: a file that is not there is the first thing that may go wrong.
-    for (const char* command : {"run", "view", "info", "generate", "distance"}) {
+    for (const char* command : {"run", "view", "info", "generate", "distance", "pairs", "query"}) {
         const std::string help = run_fase({command, "--help"}).out;
         std::size_t examples = 0;
         const std::string mark = std::string("\n  fase ") + command;

@@ -299,6 +299,17 @@ TEST(TraceWriter, RefusesWhatAReaderWouldRefuse) {
     EXPECT_TRUE(*read_all(folder / "t.aabt") == frames);
 }
 
+TEST(TraceWriter, LeavesNothingWhenItIsDiscarded) {
+    const TemporaryFolder folder;
+    Result<TraceWriter> writer = TraceWriter::create(folder / "t.aabt", 4);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE(writer->add_frame(made_up(4, 1)[0]));
+    writer->discard();
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    EXPECT_EQ(writer->add_frame(made_up(4, 1)[0]).status(), Status::Io);
+    EXPECT_EQ(writer->finish(flags_for(4)).status(), Status::Io);
+}
+
 TEST(TraceWriter, CompletesWhatFittedOnAFullDisk) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";

@@ -1,0 +1,142 @@
+/// Traces by rule and traces of runs, through the command.
+#include "fase/record/generate_trace.hpp"
+#include "fase/record/trace.hpp"
+#include "tests/cli/made_traces.hpp"
+
+namespace fase::cli {
+namespace {
+
+TEST(GenerateTrace, MakesEveryKindAndEveryKindIsRight) {
+    const TemporaryFolder folder;
+    for (const record::TraceKind& kind : record::trace_kinds()) {
+        const std::string name = folder / "t.aabt", word(kind.name);
+        const Outcome made = run_fase({"generate", word, "--count", "2000", "--frames", "8", "-o", name});
+        ASSERT_EQ(made.code, 0) << made.err;
+        EXPECT_NE(made.out.find(": " + word + ", 2000 boxes"), std::string::npos) << made.out;
+        EXPECT_NE(made.out.find(", 8 frames"), std::string::npos) << made.out;
+        const Outcome pairs = run_fase({"pairs", name, "--check", "--json"});
+        EXPECT_EQ(pairs.code, 0) << word << pairs.err;
+        EXPECT_GT(number_at(Rows(pairs.out)[0], "pairs_sum"), 0) << word;
+    }
+}
+
+TEST(GenerateTrace, HelpNamesEveryKind) {
+    const std::string help = run_fase({"generate", "--help"}).out;
+    for (const record::TraceKind& kind : record::trace_kinds())
+        EXPECT_NE(help.find("\n  " + std::string(kind.name) + " "), std::string::npos) << kind.name;
+}
+
+TEST(GenerateTrace, TheEndingDecidesBetweenSceneAndTrace) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(run_fase({"generate", "pile", "--count", "20", "-o", folder / "p.glb"}).code, 0);
+    EXPECT_EQ(run_fase({"generate", "pile", "--count", "20", "-o", folder / "p.aabt"}).code, 0);
+    EXPECT_NE(run_fase({"info", folder / "p.glb"}).out.find("glTF scene"), std::string::npos);
+    EXPECT_NE(run_fase({"info", folder / "p.aabt"}).out.find("box trace"), std::string::npos);
+    expect_error_line(run_fase({"generate", "castle", "-o", folder / "c.aabt"}), 2,
+                      "KIND: found \"castle\", need one of uniform");
+    expect_error_line(run_fase({"generate", "rain", "-o", folder / "r.glb"}), 2, "KIND: found \"rain\"");
+    expect_error_line(run_fase({"generate", "pile", "--frames", "5", "-o", folder / "q.glb"}), 2, "--frames");
+    expect_error_line(run_fase({"generate", "rain", "-o", folder / "none/r.aabt"}), 3, "found no folder");
+    EXPECT_FALSE(std::filesystem::exists(folder / "c.aabt"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "r.glb"));
+}
+
+TEST(GenerateTrace, AFullDiskIsToldWithWhatWasWritten) {
+    const TemporaryFolder folder;
+    const Outcome outcome =
+        RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"", {"generate", "rain", "-o", folder / "r.aabt"}).wait();
+    expect_error_line(outcome, 3, "wrote 0 frames");
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(InfoOfTraces, SaysWhatIsInThemAndReadsThemWhole) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "t.aabt";
+    write_trace(name, {{cube_at(0), cube_at(2), cube_at(4)}, {cube_at(0), cube_at(2.5f), cube_at(4)}},
+                {record::trace_static, record::trace_asleep, 0});
+    const auto document = scene::parse_json(run_fase({"info", name, "--json"}).out);
+    ASSERT_TRUE(document);
+    const auto info = document->root();
+    const std::vector<std::pair<std::string, double>> expected{
+        {"boxes", 3}, {"frames", 2},        {"static", 1},   {"asleep", 1},    {"woken", 1},
+        {"moved", 1}, {"moves_a_frame", 1}, {"infinite", 0}, {"mean_size", 1}, {"bytes", 16 + 4 + 6 * 24}};
+    for (const auto& [key, value] : expected) EXPECT_EQ(number_at(info, key), value) << key;
+    EXPECT_EQ(text_at(info, "room_largest"), "5 1 1");
+    std::string bytes = read_file(name);
+    bytes[bytes.size() - 13] = '\x7f';  // the last box, infinite or NaN where it begins
+    bytes[bytes.size() - 14] = '\xff';
+    write_file(name, bytes);
+    expect_error_line(run_fase({"info", name}), 2, "frame 1, body 2: found NaN as least z");
+}
+
+TEST(RunTrace, HoldsTheBeginningAndEveryStep) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "t.aabt";
+    const Outcome run = run_fase({"run", "stack", "--steps", "20", "--trace", name, "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    auto trace = record::TraceReader::open(name);
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_EQ(trace->frames(), 21u);
+    std::size_t fixed = 0;
+    for (const auto flag : trace->flags()) fixed += (flag & record::trace_static) != 0 ? 1 : 0;
+    EXPECT_GE(fixed, 1u) << "the ground";
+    EXPECT_LT(fixed, trace->boxes());
+    EXPECT_EQ(run_fase({"pairs", name, "--structure", "all", "--check"}).code, 0);
+}
+
+TEST(RunTrace, LeavesTheHashAsItIsAndGoesWithARecording) {
+    const TemporaryFolder folder;
+    const auto hash = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all{"run", "stack", "--steps", "20", "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        const auto document = scene::parse_json(run_fase(all).out);
+        return document ? text_at(document->root(), "hash") : "";
+    };
+    EXPECT_EQ(hash({}), hash({"--trace", folder / "t.aabt", "--record", folder / "r.faserec"}));
+    EXPECT_TRUE(std::filesystem::exists(folder / "r.faserec"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "t.aabt"));
+    expect_error_line(run_fase({"run", "stack", "--trace", folder / "x", "--record", folder / "x"}), 3, "need two");
+}
+
+TEST(RunTrace, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> run{"run", "stack", "--steps", "100000", "--trace"};
+    const auto to = [&](const std::string& name) {
+        std::vector<std::string> all = run;
+        all.push_back(name);
+        return run_fase(all);
+    };
+    expect_error_line(to(folder.path()), 3, "found a folder");
+    expect_error_line(to(folder / "none/t.aabt"), 3, "found no folder");
+    expect_error_line(to("/dev/full"), 3, "found a device");
+}
+
+TEST(RunTrace, WhatFittedOnAFullDiskIsKept) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "t.aabt";
+    const Outcome outcome = RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"",
+                                                  {"run", "stack", "--steps", "100000", "--trace", name, "--json"})
+                                .wait();
+    expect_error_line(outcome, 3, "frames");
+    const auto trace = record::TraceReader::open(name);
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_NE(outcome.err.find("wrote " + std::to_string(trace->frames()) + " frames"), std::string::npos)
+        << outcome.err;
+}
+
+TEST(RunTrace, ASignalEndsItWithTheTraceWhole) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "t.aabt";
+    RunningFase running({"run", "stack", "--steps", "10000000", "--trace", name});
+    const auto grows = [&] {
+        std::error_code none;
+        return std::filesystem::file_size(name + ".part", none) > 4000 && !none;
+    };
+    ASSERT_TRUE(wait_until(grows));
+    running.send(SIGTERM);
+    EXPECT_EQ(running.wait().code, 143);
+    EXPECT_TRUE(record::TraceReader::open(name));
+}
+
+}  // namespace
+}  // namespace fase::cli

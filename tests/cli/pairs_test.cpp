@@ -1,0 +1,171 @@
+/// `fase pairs`: what it prints, what it checks, what it refuses.
+#include "fase/broad/any_structure.hpp"
+#include "tests/cli/made_traces.hpp"
+
+namespace fase::cli {
+namespace {
+
+const std::vector<std::string> row_keys{"structure",   "threads",    "frames",    "build_ms", "ms",      "hash",
+                                        "pairs_first", "pairs_last", "pairs_sum", "bytes",    "checked", "chosen"};
+
+/// Four cubes in a row of which the last comes nearer; 0 and 1 are static and overlap, 2 sleeps on 1 till it is woken.
+class Pairs : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto frame = [](float two, float three) {
+            return std::vector<Aabb>{cube_at(0), cube_at(0.5f), cube_at(two), cube_at(three)};
+        };
+        write_trace(trace, {frame(1.5f, 9), frame(1.5f, 2.5f), frame(1.25f, 1)},
+                    {record::trace_static, record::trace_static, record::trace_asleep, 0});
+    }
+    TemporaryFolder folder;
+    std::string trace = folder / "t.aabt";
+};
+
+TEST_F(Pairs, PrintsTheKeysThatScriptsRelyOn) {
+    const Outcome outcome = run_fase({"pairs", trace, "--json", "--check"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    const Rows rows(outcome.out);
+    ASSERT_EQ(rows.size(), 1u);
+    expect_keys(rows[0], row_keys);
+    EXPECT_EQ(text_at(rows[0], "structure"), "auto");
+    EXPECT_EQ(text_at(rows[0], "chosen"), broad::default_structure);
+    EXPECT_EQ(number_at(rows[0], "threads"), 1);
+    EXPECT_EQ(number_at(rows[0], "frames"), 3);
+    // {1, 2}; then {2, 3} too, which touch; then {0, 3}, {1, 3} besides.
+    EXPECT_EQ(number_at(rows[0], "pairs_first"), 1);
+    EXPECT_EQ(number_at(rows[0], "pairs_last"), 4);
+    EXPECT_EQ(number_at(rows[0], "pairs_sum"), 7);
+    EXPECT_TRUE(is_true(rows[0], "checked"));
+    EXPECT_EQ(text_at(rows[0], "hash").size(), 16u);
+    expect_keys(*rows[0].find("ms"), {"mean", "median", "worst"});
+    EXPECT_GT(number_at(rows[0], "bytes"), 0);
+}
+
+TEST_F(Pairs, AllStructuresAgreeWithAnyThreads) {
+    std::string hash;
+    for (const char* threads : {"1", "3"}) {
+        const Outcome outcome =
+            run_fase({"pairs", trace, "--structure", "all", "--check", "--json", "--threads", threads});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Rows rows(outcome.out);
+        std::size_t i = 0;
+        broad::for_each_structure([&]<broad::Structure S>() {
+            ASSERT_LT(i, rows.size());
+            EXPECT_EQ(text_at(rows[i], "structure"), S::info.name);
+            EXPECT_EQ(text_at(rows[i], "chosen"), S::info.name);
+            EXPECT_EQ(number_at(rows[i], "threads"), std::stoi(threads));
+            EXPECT_EQ(kind_at(rows[i], "skipped"), scene::JsonKind::Null);
+            EXPECT_TRUE(is_true(rows[i], "checked")) << S::info.name;
+            if (hash.empty()) hash = text_at(rows[i], "hash");
+            EXPECT_EQ(text_at(rows[i], "hash"), hash) << S::info.name;
+            ++i;
+        });
+        EXPECT_EQ(rows.size(), i);
+    }
+}
+
+TEST_F(Pairs, TheHashTellsOtherPairsAndFramesApart) {
+    const auto hash = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all{"pairs", trace, "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        const Rows rows(run_fase(all).out);
+        return text_at(rows[0], "hash");
+    };
+    EXPECT_EQ(hash({}), hash({"--frames", "100"}));
+    EXPECT_NE(hash({}), hash({"--frames", "2"}));
+    const std::string before = hash({});
+    write_trace(trace, {{cube_at(0), cube_at(0.5f), cube_at(9)}}, {0, 0, 0});
+    const std::string one = hash({});
+    EXPECT_NE(one, before);
+    write_trace(trace, {{cube_at(0), cube_at(9), cube_at(0.5f)}}, {0, 0, 0});
+    EXPECT_NE(hash({}), one) << "one pair too, but of others";
+}
+
+TEST_F(Pairs, WithoutCheckNothingIsSaidOfIt) {
+    const Rows rows(run_fase({"pairs", trace, "--json", "--frames", "1"}).out);
+    EXPECT_EQ(kind_at(rows[0], "checked"), scene::JsonKind::Null);
+    EXPECT_EQ(number_at(rows[0], "frames"), 1);
+}
+
+TEST_F(Pairs, PrintsATableForPeople) {
+    const Outcome outcome = run_fase({"pairs", trace, "--structure", "all", "--check"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.out.find("4 boxes, 2 static, 1 asleep; 3 of 3 frames; 1 thread"), std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.out.find("\nbrute_force "), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out.find("WRONG"), std::string::npos);
+    std::size_t length = 0;
+    for (std::size_t at = outcome.out.find('\n') + 1; at < outcome.out.size();) {
+        const std::size_t end = outcome.out.find('\n', at);
+        if (length == 0) length = end - at;
+        EXPECT_EQ(end - at, length) << "the columns are aligned";
+        at = end + 1;
+    }
+}
+
+TEST_F(Pairs, OfAllWhatWouldTakeTooLongIsSkippedAndSaidToBe) {
+    ASSERT_EQ(run_fase({"generate", "uniform", "--count", "20000", "--frames", "50", "-o", trace}).code, 0);
+    const Outcome outcome = run_fase({"pairs", trace, "--structure", "all", "--limit", "0.0005", "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Rows rows(outcome.out);
+    expect_keys(rows[0], row_keys);
+    EXPECT_EQ(text_at(rows[0], "structure"), "brute_force");
+    EXPECT_NE(text_at(rows[0], "skipped").find("would take about"), std::string::npos);
+    for (const char* key : {"frames", "build_ms", "ms", "pairs_sum", "hash", "bytes", "checked"})
+        EXPECT_EQ(kind_at(rows[0], key), scene::JsonKind::Null) << key;
+    EXPECT_NE(text_at(rows[rows.size() - 1], "skipped").find("took more than"), std::string::npos);
+    const Outcome table = run_fase({"pairs", trace, "--structure", "all", "--limit", "0.0005"});
+    EXPECT_NE(table.out.find("skipped: would take"), std::string::npos) << table.out;
+    const Outcome named =
+        run_fase({"pairs", trace, "--structure", "brute_force", "--limit", "0.0005", "--frames", "1", "--json"});
+    EXPECT_EQ(kind_at(Rows(named.out)[0], "skipped"), scene::JsonKind::Null) << "one that is named is never skipped";
+}
+
+TEST_F(Pairs, WhatIsNoTraceIsRefused) {
+    expect_error_line(run_fase({"pairs", folder / "none.aabt"}), 3, "none.aabt: cannot open");
+    const std::string good = read_file(trace);
+    std::string bytes = good;
+    for (std::size_t i = 0; i < 4; ++i) bytes[20 + (4 + 2) * 24 + i] = '\xff';  // frame 1, body 2: least x
+    write_file(trace, bytes);
+    expect_error_line(run_fase({"pairs", trace, "--json"}), 2, ":164: frame 1, body 2: found NaN as least x");
+    write_file(trace, good.substr(0, 100));
+    expect_error_line(run_fase({"pairs", trace}), 2, ":100: frame 0, body 3: found the end of the file");
+    write_file(trace, "{}");
+    expect_error_line(run_fase({"pairs", trace}), 2, ":0: found another kind of file");
+    expect_error_line(run_fase({"info", folder / "t.aabt"}), 2, "t.aabt");
+}
+
+TEST_F(Pairs, OptionsThatCannotBeMeantAreNamed) {
+    expect_error_line(run_fase({"pairs", trace, "--structure", "magic"}), 2,
+                      "--structure: found \"magic\", need auto, all or one of brute_force");
+    expect_error_line(run_fase({"pairs", trace, "--frames", "0"}), 2, "--frames: found \"0\"");
+    expect_error_line(run_fase({"pairs"}), 2, "TRACE");
+}
+
+TEST_F(Pairs, MorePairsThanCanBeHeldAreRefusedBeforeTheyAreSought) {
+    write_trace(trace, {std::vector<Aabb>(60000, cube_at(0))}, std::vector<std::uint8_t>(60000, 0));
+    expect_error_line(run_fase({"pairs", trace}), 4, "frame 0: found about 1.8e+09 pairs, need at most 268435456");
+}
+
+TEST_F(Pairs, ASignalEndsItWithTheRowsThatAreDone) {
+    ASSERT_EQ(run_fase({"generate", "uniform", "--count", "6000", "--frames", "400", "-o", trace}).code, 0);
+    RunningFase running({"pairs", trace, "--structure", "brute_force", "--json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    running.send(SIGINT);
+    const Outcome outcome = running.wait();
+    EXPECT_EQ(outcome.code, 130);
+    EXPECT_EQ(Rows(outcome.out).size(), 0u);
+}
+
+TEST_F(Pairs, OfOthersTracesAreRight) {
+    const std::string name = std::string(FASE_SHARED_DATA) + "/traces/cloth-funnel.aabt";
+    if (!std::filesystem::exists(name)) GTEST_SKIP() << "skipped: " << name << " is missing";
+    const Outcome outcome = run_fase({"pairs", name, "--check", "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(number_at(Rows(outcome.out)[0], "pairs_first"), 805888);
+}
+
+}  // namespace
+}  // namespace fase::cli
