@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/benchmarks.md from the measured figures in bench/results/step.csv.
+"""Writes docs/benchmarks.md from the measured figures in bench/results/step.csv and bench/results/queries.csv.
 
 Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when the page is not what the
 figures give. Of several rows for one machine, scene, engine and number of threads the last one in the file counts.
@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 FIGURES = "bench/results/step.csv"
+QUERY_FIGURES = "bench/results/queries.csv"
 PAGE = "docs/benchmarks.md"
 
 HEAD = """# Benchmarks
@@ -82,12 +83,74 @@ def page_of(rows):
     return "\n".join(parts)
 
 
+QUERY_HEAD = """
+# Queries
+
+Made from `{figures}`. To add rows and renew the page:
+
+```sh
+build/release/fase bench queries --mesh building.obj --csv {figures} && tools/make_tables.py
+```
+
+Thousands of questions a second, one thread, medians over the rounds; in brackets the slowest and the quickest round. *Rays*: the
+nearest thing; *boxes*: all that overlap a box; *frusta*: all that a camera may see, copied out. All take turns in
+one run. `static`: boxes that stand; `pile`: boxes that all move in each of 60 frames, following them counts; `level`: the
+triangles of a mesh, their boxes for boxes and frusta. Before anything is timed, every answer is held against those of
+`wide_bvh`, and a part of those against brute force; *differ* counts answers that were not equal (distances along a ray within a
+ten-thousandth for those that round in their own way). What is slow is asked less.
+"""
+QUERY_COLUMNS = ["contender", "rays", "boxes", "frusta", "differ", "build ms", "bytes a thing", "commit", "date"]
+
+
+def thousands(row):
+    """A rate with three digits that count, and those of the slowest and quickest round."""
+    def short(value):
+        value = float(value) / 1000
+        digits = 0 if value >= 100 else 1 if value >= 10 else 2 if value >= 1 else 3
+        return f"{value:.{digits}f}"
+
+    return f"{short(row['per_second'])} ({short(row['low'])}–{short(row['high'])})"
+
+
+def read_query_rows(path):
+    """The rows that count, in the order of their first appearance."""
+    last = {}
+    with path.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            last[row["machine"], row["scene"], row["things"], row["contender"], row["kind"]] = row
+    return list(last.values())
+
+
+def query_page_of(rows):
+    """The section on queries as text: a table a scene, a line a contender."""
+    parts = [QUERY_HEAD.format(figures=QUERY_FIGURES)]
+    scenes = dict.fromkeys((row["machine"], row["scene"], row["things"]) for row in rows)
+    for machine, scene, things in scenes:
+        mine = [row for row in rows if (row["machine"], row["scene"], row["things"]) == (machine, scene, things)]
+        lines = [f"## {scene}, {things} things, {machine}", "", line_of(QUERY_COLUMNS), line_of(["---"] * len(QUERY_COLUMNS))]
+        for contender in dict.fromkeys(row["contender"] for row in mine):
+            kinds = {row["kind"]: row for row in mine if row["contender"] == contender}
+            any_row = next(iter(kinds.values()))
+            rates = [thousands(kinds[kind]) if kind in kinds else "" for kind in ("rays", "boxes", "frusta")]
+            differ = sum(int(row["differ"]) for row in kinds.values())
+            memory = f"{int(any_row['bytes']) / int(things):.0f}" if any_row["bytes"] else ""
+            lines.append(line_of([contender, *rates, str(differ), f"{float(any_row['build_ms']):.1f}", memory,
+                                  any_row["commit"], any_row["date"]]))
+        settings = dict.fromkeys(f"{row['contender']}: {row['settings']}" for row in mine if row["settings"] != "as it comes")
+        if settings:
+            lines += ["", "; ".join(settings) + "."]
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
 def main(arguments):
     check = "--check" in arguments
     folders = [argument for argument in arguments if argument != "--check"]
     root = Path(folders[0] if folders else Path(__file__).parent.parent)
     figures, page = root / FIGURES, root / PAGE
     text = page_of(read_rows(figures))
+    if (root / QUERY_FIGURES).is_file():
+        text += query_page_of(read_query_rows(root / QUERY_FIGURES))
     if not check:
         page.write_text(text, encoding="utf-8")
         return 0

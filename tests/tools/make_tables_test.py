@@ -58,6 +58,22 @@ class MakeTables(unittest.TestCase):
             self.write(row("fase", 4), row("fase", 1, machine="Other x 8")) / make_tables.FIGURES))
         self.assertEqual(page.count("\n## "), 2)
 
+    def test_queries_stand_a_line_a_contender(self):
+        root = self.write(row("fase", 2))
+        head = ("date,commit,machine,scene,contender,settings,kind,things,rounds,asked,per_second,low,high,hits,compared,"
+                "differ,build_ms,bytes\n")
+        line = "2026-01-02,c0ffee,Chip x 2,static,{},{},{},100,3,50,{},1000,2000000,9,50,{},12.5,{}\n"
+        (root / make_tables.QUERY_FIGURES).write_text(
+            head + line.format("wide_bvh", "as it comes", "rays", "900000", 0, 5000)
+            + line.format("wide_bvh", "as it comes", "rays", "1500000", 0, 5000)
+            + line.format("wide_bvh", "as it comes", "frusta", "12345", 0, 5000)
+            + line.format("embree", "one ray", "rays", "3000000", 2, ""), encoding="utf-8")
+        self.assertEqual(make_tables.main([str(root)]), 0)
+        page = (root / make_tables.PAGE).read_text(encoding="utf-8")
+        self.assertIn("| wide_bvh | 1500 (1.00–2000) |  | 12.3 (1.00–2000) | 0 | 12.5 | 50 | c0ffee | 2026-01-02 |", page)
+        self.assertIn("| embree | 3000 (1.00–2000) |  |  | 2 | 12.5 |  | c0ffee | 2026-01-02 |", page)
+        self.assertIn("\nembree: one ray.\n", page)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,0 +1,13 @@
+#pragma once
+/// Boost.Geometry's R-tree: boxes that overlap a box.
+#include <memory>
+#include <string_view>
+
+#include "bench/query_contender.hpp"
+
+namespace fase::bench {
+
+/// Quadratic split, 16 entries a node, packed when built; packed anew when boxes move.
+std::unique_ptr<QueryContender> make_boost_rtree(std::string_view name);
+
+}  // namespace fase::bench
