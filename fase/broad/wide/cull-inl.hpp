@@ -57,11 +57,15 @@ constexpr std::uint32_t bounds_bit = 64;
 
 /// What is known of eight children, a bit each.
 struct Verdict {
-    std::uint32_t met = 0xff;       // not surely outside
-    std::uint32_t inside = 0xff;    // surely inside of all planes
-    std::uint32_t touching = 0xff;  // surely not outside of any
-    std::uint32_t cut = 0;          // surely not inside of all
-    std::uint32_t inside_of[7];     // each plane, and the bounds; where it was asked
+    std::uint8_t met = 0xff;       // not surely outside
+    std::uint8_t inside = 0xff;    // surely inside of all planes
+    std::uint8_t touching = 0xff;  // surely not outside of any
+    std::uint8_t cut = 0;          // surely not inside of all
+    std::uint8_t inside_of[7];     // each plane, and the bounds; where it was asked
+};
+struct JudgedBranch {
+    BranchToCull branch;
+    Verdict verdict;
 };
 
 /// `OneMargin`: coordinates are so small that one margin does for all.
@@ -76,10 +80,11 @@ public:
     }
     void run() {
         const std::uint32_t all = ((1u << plane_count_) - 1) | bounds_bit;
-        for (std::size_t i = forest_.roots.size(); i-- > 0;) open_.push({forest_.roots[i], all});
+        for (std::size_t i = forest_.roots.size(); i-- > 0;)
+            open_.push({{forest_.roots[i], all}, judge(forest_.nodes[forest_.roots[i]], all)});
         while (!open_.empty()) {
-            const BranchToCull branch = open_.pop();
-            sort_out(branch, judge(forest_.nodes[branch.node], branch.planes));
+            const JudgedBranch next = open_.pop();
+            sort_out(next.branch, next.verdict);
         }
         runs_.flush();
     }
@@ -91,7 +96,7 @@ private:
     Aabb bounds_;
     CullPlane planes_[6];
     std::uint32_t plane_count_ = 0;
-    LocalStack<BranchToCull, 256> open_;
+    LocalStack<JudgedBranch, 256> open_;  // judged with their siblings, so that their children are on their way
 
     /// Finite, so that unused children do not overlap it.
     static Aabb finite(const Aabb& box) {
@@ -132,8 +137,8 @@ private:
         Verdict verdict;
         if ((asked & bounds_bit) != 0) {
             const WideBox box(bounds_);
-            verdict.met = box.overlaps(node);
-            verdict.inside_of[6] = box.contains(node);
+            verdict.met = static_cast<std::uint8_t>(box.overlaps(node));
+            verdict.inside_of[6] = static_cast<std::uint8_t>(box.contains(node));
         }
         for (std::uint32_t left = asked & (bounds_bit - 1); left != 0;) {
             const std::uint32_t p = take_bit(left);
@@ -151,18 +156,24 @@ private:
                 cut |= bits_of(hn::Gt(most_far, past)) << i;
                 in |= bits_of(hn::Lt(most_far, before)) << i;
             }
-            verdict.met &= ~out;
-            verdict.inside &= in;
-            verdict.touching &= touching;
-            verdict.cut |= cut;
-            verdict.inside_of[p] = in;
+            verdict.met = static_cast<std::uint8_t>(verdict.met & ~out);
+            verdict.inside = static_cast<std::uint8_t>(verdict.inside & in);
+            verdict.touching = static_cast<std::uint8_t>(verdict.touching & touching);
+            verdict.cut = static_cast<std::uint8_t>(verdict.cut | cut);
+            verdict.inside_of[p] = static_cast<std::uint8_t>(in);
+        }
+        for (std::uint32_t open = verdict.met & ~verdict.inside & 0xffu; open != 0;) {
+            const std::uint32_t link = node.link[take_bit(open)];
+            if ((link & leaf_bit) != 0) continue;
+            const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&forest_.nodes[link]);
+            for (std::size_t line = 0; line < sizeof(Node); line += 64) hwy::Prefetch(bytes + line);
         }
         return verdict;
     }
 
     void sort_out(BranchToCull branch, const Verdict& verdict) {
         const Node& node = forest_.nodes[branch.node];
-        BranchToCull below[width];
+        JudgedBranch below[width];
         std::uint32_t below_count = 0;
         for (std::uint32_t met = verdict.met; met != 0;) {
             const std::uint32_t child = take_bit(met), bit = 1u << child, link = node.link[child];
@@ -181,16 +192,16 @@ private:
             std::uint32_t planes = 0;
             for (std::uint32_t left = branch.planes; left != 0;) {
                 const std::uint32_t p = take_bit(left);
-                planes |= (~verdict.inside_of[p] >> child & 1) << p;
+                planes |= (~static_cast<std::uint32_t>(verdict.inside_of[p]) >> child & 1) << p;
             }
             if (planes == 0) {
                 runs_.add(first, forest_.end_of(branch.node, child), true);
             } else {
-                const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&forest_.nodes[link]);
-                for (std::size_t line = 0; line < sizeof(Node); line += 64) hwy::Prefetch(bytes + line);
-                below[below_count++] = {link, planes};
+                below[below_count++].branch = {link, planes};
             }
         }
+        for (std::uint32_t i = 0; i < below_count; ++i)
+            below[i].verdict = judge(forest_.nodes[below[i].branch.node], below[i].branch.planes);
         open_.make_room(width);
         while (below_count != 0) open_.push_if(true, below[--below_count]);
     }
