@@ -18,6 +18,7 @@
 #include "cli/view.hpp"
 #include "fase/core/version.hpp"
 #ifdef HAS_FASE_BENCH
+#include "cli/bench_pairs.hpp"
 #include "cli/bench_queries.hpp"
 #include "cli/bench_step.hpp"
 #endif
@@ -30,6 +31,7 @@ void add_bench(CLI::App& app, Start& start) {
     CLI::App& group = *app.add_subcommand("bench", "Measure, beside other engines");
     group.require_subcommand(1);
     add_bench_step(group, start);
+    add_bench_pairs(group, start);
     add_bench_queries(group, start);
 }
 #endif

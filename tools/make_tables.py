@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/benchmarks.md from the measured figures in bench/results/step.csv and bench/results/queries.csv.
+"""Writes docs/benchmarks.md from the measured figures in bench/results: step.csv, pairs.csv and queries.csv.
 
 Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when the page is not what the
 figures give. Of several rows for one machine, scene, engine and number of threads the last one in the file counts.
@@ -27,6 +27,24 @@ over that of Fase with as many threads (in brackets: the same of *least*). An en
 others' did not hold it up: *top* and *mean height* are of the bodies' centres, *drift* is their mean way from the
 start. Hashes of Fase are equal for equal commits, whatever the threads and the machine.
 """
+
+PAIR_FIGURES = "bench/results/pairs.csv"
+
+PAIR_HEAD = """
+# All pairs of many boxes
+
+From `{figures}`; rows are added with `build/release/fase bench pairs TRACES --csv {figures}`.
+
+A frame is taking its boxes and finding all pairs that overlap, with one thread; two static boxes are no pair. Engines take turns
+of six frames in one run. The pairs of each were the same as those of Fase, and those of the first frame the same as a plain
+sweep's; what finds others has no row. *Times* is the median over that of Fase's `{ours}`. *From, to*: one frame in ten was
+quicker, one in ten slower. *Worst* is the worst frame over the mean. An engine with fewer frames was too slow for all.
+"""
+
+PAIR_OURS = "row_grid"
+
+PAIR_COLUMNS = ["trace", "boxes", "engine", "median ms", "from", "to", "worst / mean", "times", "frames", "pairs",
+                "build ms", "commit", "date"]
 
 COLUMNS = [
     "scene", "engine", "threads", "bodies", "median ms", "mean ms", "worst ms", "least ms", "times", "contacts", "top m",
@@ -143,12 +161,47 @@ def query_page_of(rows):
     return "\n".join(parts)
 
 
+def pair_cells_of(row, rows):
+    """The row's cells, as PAIR_COLUMNS names them."""
+    times = ""
+    for other in rows:
+        if other["engine"] == PAIR_OURS != row["engine"] and other["trace"] == row["trace"]:
+            times = f"{float(row['median_ms']) / float(other['median_ms']):.1f}"
+    worst = float(row["worst_ms"]) / float(row["mean_ms"])
+    return [
+        row["trace"], row["boxes"], row["engine"], f"{float(row['median_ms']):.3f}", f"{float(row['low_ms']):.3f}",
+        f"{float(row['high_ms']):.3f}", f"{worst:.2f}", times, row["frames"], row["pairs"],
+        f"{float(row['build_ms']):.1f}", row["commit"], row["date"],
+    ]
+
+
+def pair_page_of(path):
+    """The part of the page on pairs as text; of several rows for one machine, trace and engine the last one counts."""
+    last = {}
+    with path.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            last[row["machine"], row["trace"], row["engine"]] = row
+    parts = [PAIR_HEAD.format(figures=PAIR_FIGURES, ours=PAIR_OURS)]
+    for machine in dict.fromkeys(row["machine"] for row in last.values()):
+        mine = [row for row in last.values() if row["machine"] == machine]
+        peers = [f"{row['engine']}: {row['settings']}" for row in mine if not row["settings"].startswith("Fase")]
+        lines = [f"## Pairs: {machine}", ""]
+        if peers:
+            lines += ["; ".join(dict.fromkeys(peers)) + ".", ""]
+        lines += [line_of(PAIR_COLUMNS), line_of(["---"] * len(PAIR_COLUMNS))]
+        lines += [line_of(pair_cells_of(row, mine)) for row in mine]
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
 def main(arguments):
     check = "--check" in arguments
     folders = [argument for argument in arguments if argument != "--check"]
     root = Path(folders[0] if folders else Path(__file__).parent.parent)
     figures, page = root / FIGURES, root / PAGE
     text = page_of(read_rows(figures))
+    if (root / PAIR_FIGURES).is_file():
+        text += pair_page_of(root / PAIR_FIGURES)
     if (root / QUERY_FIGURES).is_file():
         text += query_page_of(read_query_rows(root / QUERY_FIGURES))
     if not check:

@@ -1,0 +1,87 @@
+/// Every broad phase of the list finds the same pairs.
+#include "bench/pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bench/pair_engine.hpp"
+#include "fase/core/random.hpp"
+#include "fase/record/trace.hpp"
+
+namespace fase::bench {
+namespace {
+
+/// Boxes that fly, some of which stand or sleep, on a grid so coarse that many touch.
+std::string flying_trace(const char* name) {
+    const auto file = (std::filesystem::path(testing::TempDir()) / name).string();
+    std::filesystem::remove(file);
+    constexpr std::size_t count = 700;
+    Random random(4);
+    const auto whole = [&](std::uint64_t below) { return static_cast<float>(random.below(below)); };
+    std::vector<Aabb> boxes;
+    std::vector<Vec3> velocities;
+    std::vector<std::uint8_t> flags;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = whole(40), y = whole(40), z = whole(40);
+        const Vec3 lo = Vec3{x, y, z} * 0.25f, sides = Vec3{1 + whole(3), 1 + whole(3), 1 + whole(3)} * 0.25f;
+        boxes.push_back({lo, lo + sides});
+        flags.push_back(i % 7 == 0 ? record::trace_static : i % 5 == 0 ? record::trace_asleep : 0);
+        const float by = flags.back() == 0 ? 0.25f : 0;
+        velocities.push_back(Vec3{whole(3) - 1, whole(3) - 1, whole(3) - 1} * by);
+    }
+    Result<record::TraceWriter> writer = record::TraceWriter::create(file, count);
+    EXPECT_TRUE(writer);
+    for (int frame = 0; frame < 9; ++frame) {
+        EXPECT_TRUE(writer->add_frame(boxes));
+        for (std::size_t i = 0; i < count; ++i) boxes[i] = {boxes[i].lo + velocities[i], boxes[i].hi + velocities[i]};
+    }
+    EXPECT_TRUE(writer->finish(flags));
+    return file;
+}
+
+const PairBenchProgress go_on = [](std::uint64_t, std::uint64_t, std::string_view, std::string_view) { return true; };
+
+TEST(BenchPairs, EveryEngineFindsThePairsOfTheFirst) {
+    const std::string file = flying_trace("bench_pairs_all.aabt");
+    PairBenchOptions options;
+    options.engine = "all";
+    const auto rows = measure_pair_engines(file, options, go_on);
+    ASSERT_TRUE(rows) << rows.error().text();
+    ASSERT_EQ(rows->size(), pair_engines().size());
+    for (const PairBenchRow& row : *rows) {
+        EXPECT_TRUE(row.right) << row.engine;
+        EXPECT_EQ(row.hash, rows->front().hash) << row.engine;
+        EXPECT_EQ(row.frames, 8u) << row.engine;
+        EXPECT_GT(row.pairs, 100u);
+        EXPECT_FALSE(row.settings.empty());
+        EXPECT_LE(row.low, row.ms.median);
+        EXPECT_LE(row.ms.median, row.high);
+        EXPECT_LE(row.high, row.ms.worst);
+    }
+}
+
+TEST(BenchPairs, EnginesThatAreTooSlowDropOut) {
+    const std::string file = flying_trace("bench_pairs_slow.aabt");
+    PairBenchOptions options;
+    options.engine = "brute_force,row_grid";
+    options.limit = 1e-9;
+    const auto rows = measure_pair_engines(file, options, go_on);
+    ASSERT_TRUE(rows);
+    ASSERT_EQ(rows->size(), 2u);
+    EXPECT_EQ(rows->front().frames, 5u);  // one turn, less its first frame
+}
+
+TEST(BenchPairs, RefusesNamesThatAreNotThere) {
+    const std::string file = flying_trace("bench_pairs_names.aabt");
+    PairBenchOptions options;
+    options.engine = "row_grid,quick_grid";
+    const auto rows = measure_pair_engines(file, options, go_on);
+    ASSERT_FALSE(rows);
+    EXPECT_EQ(rows.error().status, Status::BadArgument);
+    EXPECT_NE(rows.error().text().find("quick_grid"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fase::bench
