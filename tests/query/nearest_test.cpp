@@ -61,6 +61,19 @@ TEST_P(EveryNearest, MeasuresToTheThingsInTheBoxes) {
     }));
 }
 
+TEST_P(EveryNearest, KeepsTheSmallestProxiesOfThoseAsFar) {
+    const AnyStructure structure = filled(GetParam(), std::vector<Aabb>(30, Aabb{{2, 0, 0}, {3, 1, 1}}));
+    std::vector<Hit> found;
+    nearest(structure, {0, 0.5, 0.5}, 4, 2, found);
+    EXPECT_EQ(found, (std::vector<Hit>{{2, 0}, {2, 1}, {2, 2}, {2, 3}}));
+}
+
+TEST_P(EveryNearest, TakesAThingThatClaimsToBeNearerThanItsBoxAsFarAsTheBox) {
+    const AnyStructure structure = filled(GetParam(), {{{2, 0, 0}, {3, 1, 1}}, {{1, 0, 0}, {1.5f, 1, 1}}});
+    const auto liar = [](Proxy p, const Aabb&, float, float) { return p == 0 ? 0.5f : 1.25f; };
+    EXPECT_EQ(nearest(structure, {0, 0.5, 0.5}, 9, liar).value_or(Hit{}), (Hit{1.25f, 1}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Registry, EveryNearest, ::testing::ValuesIn(structure_names()), name_of);
 
 }  // namespace
