@@ -1,0 +1,212 @@
+/// PNG files in and out, through libpng. libpng leaves its functions by longjmp when something is wrong: it is called
+/// only from functions whose locals need no destructor, and what they fill belongs to their callers.
+#include "fase/atlas/png.hpp"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+
+#include "fase/core/files.hpp"
+
+namespace fase::atlas {
+namespace {
+
+/// What libpng's callbacks reach: bytes to read or a place to write, and the message of its error.
+struct Talk {
+    const std::byte* next = nullptr;
+    std::size_t left = 0, size = 0;
+    std::vector<std::byte>* out = nullptr;
+    bool no_memory = false;
+    char message[160] = {};
+    std::jmp_buf back;
+};
+
+void say(Talk& talk, const char* text) { std::snprintf(talk.message, sizeof talk.message, "%s", text); }
+
+[[noreturn]] void on_error(png_structp png, png_const_charp text) {
+    auto& talk = *static_cast<Talk*>(png_get_error_ptr(png));
+    say(talk, text);
+    std::longjmp(talk.back, 1);
+}
+void on_warning(png_structp, png_const_charp) {}
+
+void on_read(png_structp png, png_bytep to, std::size_t count) {
+    auto& talk = *static_cast<Talk*>(png_get_io_ptr(png));
+    if (count > talk.left) png_error(png, "the file ends too early");
+    std::memcpy(to, talk.next, count);
+    talk.next += count;
+    talk.left -= count;
+}
+
+/// Adds to the output; false without memory. The vector is touched here only, so that no jump leaves it half grown.
+bool append(Talk& talk, const png_byte* from, std::size_t count) noexcept {
+    try {
+        const auto* bytes = reinterpret_cast<const std::byte*>(from);
+        talk.out->insert(talk.out->end(), bytes, bytes + count);
+        return true;
+    } catch (...) {
+        talk.no_memory = true;
+        return false;
+    }
+}
+void on_write(png_structp png, png_bytep from, std::size_t count) {
+    if (!append(*static_cast<Talk*>(png_get_io_ptr(png)), from, count)) png_error(png, "too little memory");
+}
+void on_flush(png_structp) {}
+
+/// Both structures of libpng, freed at the end.
+struct Handles {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    bool reads = true;
+    Handles() = default;
+    Handles(const Handles&) = delete;
+    Handles& operator=(const Handles&) = delete;
+    ~Handles() {
+        if (reads) {
+            png_destroy_read_struct(&png, &info, nullptr);
+        } else {
+            png_destroy_write_struct(&png, &info);
+        }
+    }
+};
+
+struct Header {
+    png_uint_32 width = 0, height = 0;
+    int depth = 0, kind = 0, interlaced = 0;
+    int colours = 0;
+    std::array<std::array<std::uint8_t, 4>, 256> palette = {};
+};
+
+/// Reads all that stands before the pixels and asks for rows of RGBA, or of a palette's indices.
+bool read_header(png_structp png, png_infop info, Talk& talk, Header& header) {
+    if (setjmp(talk.back) != 0) return false;
+    png_set_read_fn(png, &talk, on_read);
+    png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // told apart by our own limit
+    png_read_info(png, info);
+    png_get_IHDR(png, info, &header.width, &header.height, &header.depth, &header.kind, &header.interlaced, nullptr,
+                 nullptr);
+    if (header.kind == PNG_COLOR_TYPE_PALETTE) {
+        png_colorp colours = nullptr;
+        png_bytep alphas = nullptr;
+        int alpha_count = 0;
+        if (png_get_PLTE(png, info, &colours, &header.colours) == 0) png_error(png, "no palette");
+        if (png_get_tRNS(png, info, &alphas, &alpha_count, nullptr) == 0) alpha_count = 0;
+        for (int i = 0; i < header.colours && i < 256; ++i)
+            header.palette[static_cast<std::size_t>(i)] = {colours[i].red, colours[i].green, colours[i].blue,
+                                                           i < alpha_count ? alphas[i] : png_byte{255}};
+        png_set_packing(png);
+    } else {
+        png_set_expand(png);
+        png_set_scale_16(png);
+        png_set_gray_to_rgb(png);
+        png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
+    }
+    return true;
+}
+
+/// Reads the pixels, whose rows lie one after the other, and the end of the file.
+bool read_rows(png_structp png, png_infop info, Talk& talk, std::uint8_t* pixels, std::size_t row_size,
+               png_uint_32 height) {
+    if (setjmp(talk.back) != 0) return false;
+    const int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    if (png_get_rowbytes(png, info) != row_size) png_error(png, "rows of an unexpected size");
+    for (int pass = 0; pass < passes; ++pass)
+        for (png_uint_32 y = 0; y < height; ++y) png_read_row(png, pixels + y * row_size, nullptr);
+    png_read_end(png, nullptr);
+    return true;
+}
+
+bool write_all(png_structp png, png_infop info, Talk& talk, const Image& image) {
+    if (setjmp(talk.back) != 0) return false;
+    png_set_write_fn(png, &talk, on_write, on_flush);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(image.size.width), static_cast<png_uint_32>(image.size.height), 8,
+                 PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (int y = 0; y < image.size.height; ++y) png_write_row(png, image.at(0, y));
+    png_write_end(png, info);
+    return true;
+}
+
+}  // namespace
+
+Result<Image> read_png(std::span<const std::byte> bytes, const std::string& where) {
+    Talk talk;
+    talk.next = bytes.data();
+    talk.left = talk.size = bytes.size();
+    const auto refuse = [&](std::string problem) {
+        return Error{Status::Format, fmt::format("{}:{}", where, talk.size - talk.left), std::move(problem), {}};
+    };
+    if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
+        return refuse("found no PNG signature, need a PNG file");
+    Handles handles;
+    handles.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning);
+    if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);
+    if (handles.info == nullptr) return Error{Status::NoMemory, where, "found too little memory", {}};
+    Header header;
+    if (!read_header(handles.png, handles.info, talk, header))
+        return refuse(fmt::format("found a broken PNG ({}), need a whole one", talk.message));
+    const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
+    if (pixels > static_cast<std::uint64_t>(most_pixels))
+        return refuse(
+            fmt::format("image expands to {} x {} pixels, limit {} pixels", header.width, header.height, most_pixels));
+    // Deflate makes at most 1032 bytes of one: an image that cannot be in the file gets no memory.
+    const std::uint64_t channels = header.kind == PNG_COLOR_TYPE_RGB || header.kind == PNG_COLOR_TYPE_RGBA ? 3 : 1;
+    const std::uint64_t least = pixels * channels * static_cast<std::uint64_t>(header.depth) / 8 / 1032;
+    if (least > bytes.size())
+        return refuse(fmt::format("found {} bytes, need at least {} for {} x {} pixels", bytes.size(), least,
+                                  header.width, header.height));
+    Image image(Size{static_cast<int>(header.width), static_cast<int>(header.height)});
+    const bool indexed = header.kind == PNG_COLOR_TYPE_PALETTE;
+    std::vector<std::uint8_t> indices(indexed ? static_cast<std::size_t>(pixels) : 0);
+    std::uint8_t* const rows = indexed ? indices.data() : image.pixels.data();
+    const std::size_t row_size = std::size_t{header.width} * (indexed ? 1 : 4);
+    if (!read_rows(handles.png, handles.info, talk, rows, row_size, header.height))
+        return refuse(fmt::format("found a broken PNG ({}), need a whole one", talk.message));
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] >= header.colours)
+            return refuse(fmt::format("found palette index {} at pixel {}, {}, need 0 to {}", indices[i],
+                                      i % header.width, i / header.width, header.colours - 1));
+        std::memcpy(image.pixels.data() + 4 * i, header.palette[indices[i]].data(), 4);
+    }
+    return image;
+}
+
+Result<Image> read_png_file(const std::string& path) {
+    const Result<std::vector<std::byte>> bytes = read_file(path, std::size_t{1} << 30);
+    if (!bytes) return bytes.error();
+    return read_png(*bytes, path);
+}
+
+Result<std::vector<std::byte>> write_png(const Image& image) {
+    if (image.size.width < 1 || image.size.height < 1)
+        return Error{Status::BadArgument, "image", "found no pixels, need some", {}};
+    if (image.size.width > 65536 || image.size.height > 65536)
+        return Error{
+            Status::Capacity,
+            "image",
+            fmt::format("found {} x {} pixels, need sides of at most 65536", image.size.width, image.size.height),
+            {}};
+    std::vector<std::byte> out;
+    Talk talk;
+    talk.out = &out;
+    Handles handles;
+    handles.reads = false;
+    handles.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning);
+    if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);
+    if (handles.info == nullptr) return Error{Status::NoMemory, "image", "found too little memory", {}};
+    if (!write_all(handles.png, handles.info, talk, image))
+        return Error{talk.no_memory ? Status::NoMemory : Status::Io,
+                     "image",
+                     fmt::format("cannot be written as PNG: {}", talk.message),
+                     {}};
+    return out;
+}
+
+}  // namespace fase::atlas
