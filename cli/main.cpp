@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cli/arguments.hpp"
+#include "cli/atlas.hpp"
 #include "cli/distance.hpp"
 #include "cli/draw.hpp"
 #include "cli/generate.hpp"
@@ -57,6 +58,7 @@ int run_program(int count, char** arguments) {
     add_draw(app, start);
     add_pairs(app, start);
     add_query(app, start);
+    add_atlas(app, start);
 #ifdef HAS_FASE_BENCH
     add_bench(app, start);
 #endif

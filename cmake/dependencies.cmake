@@ -8,6 +8,7 @@ find_package(TBB CONFIG REQUIRED)            # threads
 find_package(zstd CONFIG REQUIRED)           # recordings
 find_package(nlohmann_json CONFIG REQUIRED)  # scenes, reports
 find_package(fmt CONFIG REQUIRED)            # messages
+find_package(PNG REQUIRED)                   # pages of sprites
 
-set(FASE_PRIVATE_LIBRARIES hwy::hwy TBB::tbb zstd::libzstd_shared nlohmann_json::nlohmann_json fmt::fmt
+set(FASE_PRIVATE_LIBRARIES hwy::hwy TBB::tbb zstd::libzstd_shared nlohmann_json::nlohmann_json fmt::fmt PNG::PNG
                            Threads::Threads)

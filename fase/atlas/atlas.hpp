@@ -67,7 +67,7 @@ struct NamedBytes {
                                                        const AtlasOptions& options = {});
 
 /// Writes files so that all are there or none is new: each under another name first, renamed when all are written.
-/// Io when one cannot be written; then those that were there before are as they were.
+/// Io when one cannot be written; then those that were there before are as they were (unless a rename itself fails).
 [[nodiscard]] Result<void> write_files(std::span<const NamedBytes> files);
 
 }  // namespace fase::atlas

@@ -1,5 +1,6 @@
 /// The files of an atlas: pages as PNG, frames as JSON.
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -100,6 +101,13 @@ Result<void> write_files(std::span<const NamedBytes> files) {
             return error;
         }
         staged.push_back(name);
+    }
+    // Nothing else stands in the way of a rename in the folder that was just written to.
+    for (const NamedBytes& file : files) {
+        struct stat there = {};
+        if (::stat(file.name.c_str(), &there) != 0 || !S_ISDIR(there.st_mode)) continue;
+        take_back();
+        return Error{Status::Io, file.name, "found a folder, need a file's name", {}};
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
         if (std::rename(staged[i].c_str(), files[i].name.c_str()) == 0) continue;

@@ -79,10 +79,13 @@ private:
         for (std::size_t i = 0; i < counts_.size(); ++i) area += area_of(bench_.kinds()[i]) * counts_[i];
         return area;
     }
-    /// Whether this page may have another try.
+    [[nodiscard]] double spent_ms() const {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+    }
+    /// Whether this page may have another try; by time, one as long as the last must fit.
     [[nodiscard]] bool may_try() const {
         if (options_.tries > 0) return page_tries_ < options_.tries;
-        return std::chrono::duration<double, std::milli>(Clock::now() - start_).count() < page_end_ms_;
+        return spent_ms() + last_try_ms_ < page_end_ms_;
     }
     /// Tries rules on a page and keeps the outcome when it is better: less left over, or a smaller page for all.
     bool attempt(std::uint32_t number, Size page, std::int64_t most_lost);
@@ -97,7 +100,7 @@ private:
     TryBench bench_;
     std::vector<std::uint32_t> counts_;
     Clock::time_point start_;
-    double page_end_ms_ = 0;
+    double page_end_ms_ = 0, last_try_ms_ = 0;
     int page_tries_ = 0, tries_ = 0;
     Filled best_;
     std::vector<Laid> laid_;
@@ -107,7 +110,9 @@ bool Packer::attempt(std::uint32_t number, Size page, std::int64_t most_lost) {
     const TryRules rules = rules_of(number, options_.method);
     ++page_tries_;
     ++tries_;
+    const double begun_ms = spent_ms();
     const std::int64_t left = bench_.fill(rules, page, counts_, most_lost, laid_);
+    last_try_ms_ = spent_ms() - begun_ms;
     // Only what may leave something over counts as an outcome when it does: others were broken off.
     if (left > 0 && most_lost != no_limit) return false;
     const bool better = left < best_.left || (left == best_.left && area_of(page) < area_of(best_.page));
@@ -191,7 +196,7 @@ void Packer::fill_page(std::int64_t area) {
     page_tries_ = 0;
     const int limit = options_.max_side + options_.padding;
     // Each page that is to come gets an equal share of the time that is left.
-    const double spent = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+    const double spent = spent_ms();
     const double pages = std::ceil(static_cast<double>(area) / (static_cast<double>(limit) * limit));
     page_end_ms_ = spent + std::max(0.0, options_.budget_ms - spent) / std::max(1.0, pages);
     if (options_.power_of_two) {

@@ -1,0 +1,175 @@
+/// The command `fase atlas`: packs images into pages, or rectangles for measuring.
+#include "cli/atlas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <set>
+
+#include "cli/arguments.hpp"
+#include "cli/output.hpp"
+#include "cli/sprite_files.hpp"
+#include "cli/start.hpp"
+#include "fase/atlas/atlas.hpp"
+#include "fase/scene/json.hpp"
+
+namespace fase::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is told of a packing.
+struct Figures {
+    std::size_t count = 0, different = 0;
+    std::vector<atlas::Size> pages;
+    double occupancy = 0, ms = 0;
+    std::string rule;
+};
+
+void print(const Figures& figures, bool json) {
+    atlas::Size largest;
+    for (const atlas::Size page : figures.pages)
+        if (area_of(page) > area_of(largest)) largest = page;
+    if (json) {
+        fmt::print(
+            "{{\"count\": {}, \"pages\": {}, \"width\": {}, \"height\": {}, \"occupancy\": {:.6f}, \"ms\": {:.3f}, "
+            "\"different\": {}, \"rule\": {}}}\n",
+            figures.count, figures.pages.size(), largest.width, largest.height, figures.occupancy, figures.ms,
+            figures.different, scene::quoted(figures.rule));
+        return;
+    }
+    const std::string shared =
+        figures.different == figures.count ? "" : fmt::format(" ({} different)", figures.different);
+    fmt::print("{}{} on {} page{}{} x {}: {:.2f} % filled, {:.2f} ms, {}\n", figures.count, shared,
+               figures.pages.size(), figures.pages.size() == 1 ? " of " : "s of up to ", largest.width, largest.height,
+               100 * figures.occupancy, figures.ms, figures.rule);
+}
+
+Result<atlas::PackOptions> pack_options_of(const AtlasCommand& command) {
+    atlas::PackOptions options;
+    options.max_side = command.max_side.value_or(command.rects.empty() ? 4096 : atlas::most_page_side);
+    options.padding = command.padding;
+    options.extrude = command.extrude;
+    options.rotate = !command.no_rotate;
+    options.power_of_two = command.power_of_two;
+    options.budget_ms = command.budget_ms;
+    options.tries = command.tries;
+    if (command.method == "kd_tree") {
+        options.method = atlas::Method::KdTree;
+    } else if (command.method == "skyline") {
+        options.method = atlas::Method::Skyline;
+    } else if (!command.method.empty() && command.method != "best") {
+        return Error{Status::BadArgument,
+                     "--method",
+                     fmt::format("found \"{}\", need best, kd_tree or skyline", printable(command.method, 40)),
+                     {}};
+    }
+    return options;
+}
+
+Result<Figures> pack_rectangles(const AtlasCommand& command, const atlas::PackOptions& options) {
+    const Result<std::vector<atlas::Size>> sizes = read_rectangles(command.rects);
+    if (!sizes) return sizes.error();
+    const auto start = std::chrono::steady_clock::now();
+    const Result<atlas::Packing> packing = atlas::pack(*sizes, options);
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (!packing) {
+        Error error = packing.error();
+        error.where = command.rects + ": " + error.where;
+        return error;
+    }
+    return Figures{sizes->size(), sizes->size(), packing->pages, packing->occupancy(*sizes), ms, packing->rule};
+}
+
+Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions& pack_options) {
+    for (const char* ending : {".png", ".json"})
+        if (auto writable = check_output(command.output + ending); !writable) return writable.error();
+    const Result<std::vector<SpriteFile>> files = find_sprites(command.inputs);
+    if (!files) return files.error();
+    const Result<std::vector<atlas::Sprite>> sprites = read_sprites(*files);
+    if (!sprites) return sprites.error();
+    const atlas::AtlasOptions options{pack_options, command.trim, command.array};
+    const Result<atlas::Atlas> made = atlas::make_atlas(*sprites, options);
+    if (!made) return made.error();
+    const Result<std::vector<atlas::NamedBytes>> outputs = atlas::files_of(*made, command.output, options);
+    if (!outputs) return outputs.error();
+    std::set<fs::path> read;
+    std::error_code no_matter;
+    for (const SpriteFile& file : *files) read.insert(fs::weakly_canonical(file.path, no_matter));
+    for (const atlas::NamedBytes& file : *outputs) {
+        if (auto writable = check_output(file.name); !writable) return writable.error();
+        if (read.contains(fs::weakly_canonical(file.name, no_matter)))
+            return Error{Status::Io, file.name, "found a file that is read, need another one to write",
+                         "keep pages out of the folder of the sprites"};
+    }
+    if (auto written = atlas::write_files(*outputs); !written) return written.error();
+    Figures figures{sprites->size(), made->different, {}, made->occupancy, made->pack_ms, made->rule};
+    for (const atlas::Image& page : made->pages) figures.pages.push_back(page.size);
+    return figures;
+}
+
+Result<Figures> work(const AtlasCommand& command) {
+    const bool measures = !command.rects.empty();
+    if (measures && (!command.inputs.empty() || !command.output.empty()))
+        return Error{Status::BadArgument, "--rects", "found images or an output beside it, need one or the other", {}};
+    if (!measures && command.inputs.empty())
+        return Error{Status::BadArgument, "FILES", "found none, need PNG files or a folder of them",
+                     "fase atlas --help"};
+    if (!measures && command.output.empty())
+        return Error{Status::BadArgument, "--output", "found none, need the NAME of NAME.png and NAME.json",
+                     "fase atlas --help"};
+    const Result<atlas::PackOptions> options = pack_options_of(command);
+    if (!options) return options.error();
+    return measures ? pack_rectangles(command, *options) : make_pages(command, *options);
+}
+
+}  // namespace
+
+int run_atlas(const AtlasCommand& command) {
+    try {
+        const Result<Figures> figures = work(command);
+        if (!figures) return refuse(figures.error());
+        print(*figures, command.json);
+        return exit_ok;
+    } catch (const std::bad_alloc&) {
+        return refuse({Status::NoMemory, "atlas", "found too little memory for images and pages", {}});
+    }
+}
+
+void add_atlas(CLI::App& app, Start& start) {
+    auto& options = start.options<AtlasCommand>();
+    CLI::App& command = *app.add_subcommand("atlas", "Pack images into pages, for PixiJS and Phaser");
+    command.add_option("FILES", options.inputs, "PNG files, or folders of them")->type_name("TEXT");
+    add_text(command, "-o,--output", "NAME: writes NAME.png and NAME.json, or NAME-0.png … for several pages",
+             options.output);
+    add_text(command, "--rects", "Packs the rectangles of a file instead: width and height a line", options.rects);
+    add_whole_number(command, "--max", "The largest side of a page (default 4096; of --rects 65536)", 1,
+                     atlas::most_page_side, options.max_side);
+    add_whole_number(command, "--padding", "Empty pixels between sprites (default 0)", 0, 1024, options.padding);
+    add_whole_number(command, "--extrude", "Pixels around each sprite that repeat its edge (default 0)", 0, 1024,
+                     options.extrude);
+    command.add_flag("--trim", options.trim, "Leave transparent edges out");
+    command.add_flag("--no-rotate", options.no_rotate, "Turn no sprite");
+    command.add_flag("--power-of-two", options.power_of_two, "Pages whose sides are powers of two");
+    command.add_flag("--array", options.array, "Frames as a JSON array instead of an object by name");
+    add_text(command, "--method", "best (default), kd_tree or skyline", options.method);
+    add_positive_number(command, "--budget-ms", "Time of packing (default 50)", 1e7,
+                        [&options](double value) { options.budget_ms = value; });
+    add_whole_number(command, "--tries", "Fillings tried a page, instead of a time: the same pages on any machine", 1,
+                     1000000000, options.tries);
+    add_json(command, options.json);
+    command.footer(
+        "\nExamples:\n"
+        "  fase atlas sprites -o game --trim --padding 2\n"
+        "  fase atlas hero.png tree.png -o game --power-of-two --tries 100\n"
+        "  fase atlas --rects sizes.txt --budget-ms 3 --json\n"
+        "\nA sprite of a folder is called by its way from there, a file by its own name. Sprites that look the same\n"
+        "share a place. Occupancy is the share of the pages' pixels that sprites cover; the time is that of packing.");
+    start.on(command, [&options] { return run_atlas(options); });
+}
+
+}  // namespace fase::cli

@@ -1,0 +1,143 @@
+/// Finds and reads the images that go into an atlas.
+#include "cli/sprite_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+
+#include "fase/atlas/png.hpp"
+#include "fase/core/files.hpp"
+
+namespace fase::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t most_pixels_together = std::int64_t{1} << 28;
+constexpr std::size_t most_text = std::size_t{1} << 28;
+
+bool is_png(const fs::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+    return ending == ".png";
+}
+
+Error io_error(const fs::path& path, const std::error_code& why) {
+    return {Status::Io, path.string(), "cannot read: " + why.message(), {}};
+}
+
+/// Whether `path` is below `folder`; both without links.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+Result<void> find_in_folder(const std::string& folder, std::vector<SpriteFile>& found) {
+    std::error_code why;
+    const fs::path home = fs::canonical(folder, why);
+    if (why) return io_error(folder, why);
+    fs::recursive_directory_iterator at(folder, why), end;
+    while (!why && at != end) {
+        const fs::path path = at->path();
+        std::error_code no_matter;
+        if (is_png(path) && !at->is_directory(no_matter)) {
+            const fs::path real = fs::canonical(path, why);
+            if (why) return io_error(path, why);
+            if (!lies_in(real, home))
+                return Error{
+                    Status::Format, path.string(), "found a link that leaves the folder, need a file in it", {}};
+            found.push_back({path.string(), path.lexically_relative(folder).generic_string()});
+        }
+        at.increment(why);
+    }
+    if (why) return io_error(folder, why);
+    return {};
+}
+
+/// Takes a whole number and the blanks before it off a line; false when there is none.
+bool take_number(std::string_view& line, int& number) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+    if (error != std::errc()) return false;
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+    return line.empty() || line.front() == ' ' || line.front() == '\t';
+}
+
+}  // namespace
+
+Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs) {
+    std::vector<SpriteFile> found;
+    for (const std::string& input : inputs) {
+        std::error_code no_matter;
+        if (fs::is_directory(input, no_matter)) {
+            const std::size_t before = found.size();
+            if (auto searched = find_in_folder(input, found); !searched) return searched.error();
+            if (found.size() == before)
+                return Error{Status::Format, input, "found no .png file in the folder, need some", {}};
+        } else {
+            found.push_back({input, fs::path(input).filename().string()});
+        }
+    }
+    std::sort(found.begin(), found.end(), [](const SpriteFile& a, const SpriteFile& b) {
+        return a.name != b.name ? a.name < b.name : a.path < b.path;
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (i > 0 && found[i].name == found[i - 1].name)
+            return Error{Status::BadArgument, found[i].path,
+                         "found the name of " + found[i - 1].path + " again, need different ones",
+                         "give the folder that holds both"};
+        if (const std::string_view problem = atlas::problem_of_name(found[i].name); !problem.empty())
+            return Error{Status::BadArgument, found[i].path, std::string(problem), {}};
+    }
+    return found;
+}
+
+Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> files) {
+    std::vector<atlas::Sprite> sprites;
+    std::int64_t pixels = 0;
+    for (const SpriteFile& file : files) {
+        Result<atlas::Image> image = atlas::read_png_file(file.path);
+        if (!image) return image.error();
+        pixels += area_of(image->size);
+        if (pixels > most_pixels_together)
+            return Error{
+                Status::Capacity, file.path,
+                fmt::format("found {} pixels in the images up to here, need at most {}", pixels, most_pixels_together),
+                "make several atlases"};
+        sprites.push_back({file.name, *std::move(image)});
+    }
+    return sprites;
+}
+
+Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
+    const Result<std::vector<std::byte>> bytes = read_file(path, most_text);
+    if (!bytes) return bytes.error();
+    std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    std::vector<atlas::Size> sizes;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::string_view whole = line;
+        while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
+            line.remove_suffix(1);
+        if (line.empty()) continue;
+        atlas::Size size;
+        const bool good = take_number(line, size.width) && take_number(line, size.height) && line.empty();
+        if (!good || size.width < 1 || size.height < 1 || size.width > atlas::most_page_side ||
+            size.height > atlas::most_page_side)
+            return Error{Status::Format,
+                         fmt::format("{}:{}", path, number),
+                         fmt::format("found \"{}\", need a width and a height of 1 to {}", whole.substr(0, 60),
+                                     atlas::most_page_side),
+                         {}};
+        sizes.push_back(size);
+    }
+    if (sizes.empty()) return Error{Status::Format, path, "found no rectangles, need some", {}};
+    return sizes;
+}
+
+}  // namespace fase::cli
