@@ -23,6 +23,19 @@ void find_pairs_between(const RowView& few, const RowView& many, std::size_t beg
     }
 }
 
+/// The pairs of a box of each that have an odd box in them.
+void find_odd_between(const BoxStore& a, const BoxStore& b, std::vector<Pair>& out) {
+    PairSink sink(out);
+    const auto against = [&](std::span<const Move> odd, std::span<const Move> others) {
+        for (const Move& m : odd)
+            for (const Move& other : others)
+                if (m.proxy != other.proxy && overlaps(m.box, other.box)) sink.add(m.proxy, other.proxy);
+    };
+    against(a.odd(), b.ordinary());
+    against(a.odd(), b.odd());
+    against(b.odd(), a.ordinary());
+}
+
 /// The search for pairs in parts that tasks take one at a time. Cuts go by count, so that the order of the pairs does
 /// not depend on the threads.
 struct Chunks {
@@ -96,14 +109,8 @@ void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
     const auto add = [&](Proxy p, Proxy q) { sink.add(p, q); };
     moving_.boxes.odd_pairs(false, add);
     if (resting_too) resting_.boxes.odd_pairs(false, add);
-    const auto against = [&](std::span<const Move> odd, std::span<const Move> others) {
-        for (const Move& m : odd)
-            for (const Move& other : others)
-                if (overlaps(m.box, other.box)) sink.add(m.proxy, other.proxy);
-    };
-    against(moving_.boxes.odd(), resting_.boxes.ordinary());
-    against(moving_.boxes.odd(), resting_.boxes.odd());
-    against(resting_.boxes.odd(), moving_.boxes.ordinary());
+    sink.flush();
+    find_odd_between(moving_.boxes, resting_.boxes, out);
 }
 
 void RowGrid::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
@@ -142,6 +149,19 @@ void RowGrid::find_pairs_of(std::span<const Move> askers, std::span<const std::u
         }
         PairBlock block(out);
         row_grid::find_asked_pairs(part->grid.view(), {askers, is_asker}, block);
+    }
+}
+
+void RowGrid::find_pairs_with(const RowGrid& other, std::vector<Pair>& out) const {
+    for (const Part* mine : {&moving_, &resting_}) {
+        for (const Part* theirs : {&other.moving_, &other.resting_}) {
+            find_odd_between(mine->boxes, theirs->boxes, out);
+            const RowView a = mine->grid.view(), b = theirs->grid.view();
+            const RowView &few = a.count <= b.count ? a : b, &many = a.count <= b.count ? b : a;
+            if (few.count == 0) continue;
+            PairBlock block(out);
+            find_pairs_between(few, many, 0, few.count, block);
+        }
     }
 }
 

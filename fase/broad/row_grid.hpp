@@ -55,6 +55,11 @@ public:
     void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
                        std::vector<Pair>& out) const;
 
+    /// Every pair of a box of this grid and one of `other`: the fewer ask, in the order in which they lie. Proxies of
+    /// both count as one numbering, and a proxy that is in both is not paired with itself.
+    void find_pairs_with(const RowGrid& other, std::vector<Pair>& out) const;
+    static constexpr bool asks_in_order = true;
+
     template <class Visit> void for_each_leaf(Visit&& visit) const;
 
     /// Cells of all levels, empty ones too; rows, where they stand in a list.
