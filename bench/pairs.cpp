@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
+#include <ctime>
 #include <memory>
 
 #include "bench/pair_engine.hpp"
@@ -16,15 +17,13 @@
 namespace fase::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Frames that an engine takes before another has its turn: few, so that noise meets all; several, so that each works
 /// with its own data in the caches most of the time.
 constexpr std::uint64_t frames_a_turn = 6;
 
-double ms_since(Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
+/// Milliseconds that the processor has worked for this program: all is done by one thread, and other programs do not
+/// count.
+double ms_worked() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
 
 /// Engines of a list like "row_grid,peers", in the order of THE list.
 Result<std::vector<const PairEngineInfo*>> engines_named(const std::string& names) {
@@ -80,22 +79,51 @@ broad::PairSetPrint judged(const PairScene& scene) {
     return broad::print_of(pairs);
 }
 
+/// What the engine works to be made and to go through some frames of a part of the boxes, each `stride`-th; seconds.
+double seconds_for_part(const PairEngineInfo& info, const PairScene& scene,
+                        const std::vector<std::vector<Aabb>>& frames, std::size_t stride) {
+    std::vector<std::vector<Aabb>> parts(frames.size());
+    std::vector<Population> populations;
+    for (std::size_t i = 0; i < scene.boxes.size(); i += stride) {
+        populations.push_back(scene.populations[i]);
+        for (std::size_t k = 0; k < frames.size(); ++k) parts[k].push_back(frames[k][i]);
+    }
+    std::vector<Pair> pairs;
+    const double begin = ms_worked();
+    const auto engine = info.make({parts[0], populations}, info.name);
+    for (const std::vector<Aabb>& part : parts) {
+        engine->update(part);
+        pairs.clear();
+        engine->find_pairs(pairs);
+    }
+    return (ms_worked() - begin) / 1000;
+}
+
+/// How long the first turn would take, about: by how much longer twice as many boxes take. 0 for so few boxes that it
+/// does not matter.
+double guessed_seconds(const PairEngineInfo& info, const PairScene& scene,
+                       const std::vector<std::vector<Aabb>>& frames) {
+    if (scene.boxes.size() < 20000) return 0;
+    const double few = seconds_for_part(info, scene, frames, 32), twice = seconds_for_part(info, scene, frames, 16);
+    return twice * std::pow(std::clamp(twice / few, 2.0, 5.0), 4);
+}
+
 /// The engine goes through the frames of a turn. `right` are the prints of their pairs: the first engine to come by
 /// fills in those that are not known yet.
 void take_turn(Contender& contender, const PairScene& scene, const std::vector<std::vector<Aabb>>& frames, bool first,
                std::vector<broad::PairSetPrint>& right, std::vector<Pair>& pairs) {
     if (first) {
-        const Clock::time_point begin = Clock::now();
+        const double begin = ms_worked();
         contender.engine = contender.info->make(scene, contender.info->name);
-        contender.row.build_ms = ms_since(begin);
+        contender.row.build_ms = ms_worked() - begin;
         contender.seconds += contender.row.build_ms / 1000;
     }
     for (std::size_t k = 0; k < frames.size(); ++k) {
         pairs.clear();
-        const Clock::time_point begin = Clock::now();
+        const double begin = ms_worked();
         contender.engine->update(frames[k]);
         contender.engine->find_pairs(pairs);
-        const double ms = ms_since(begin);
+        const double ms = ms_worked() - begin;
         contender.seconds += ms / 1000;
         if (!first || k > 0) contender.times.push_back(ms);
         const broad::PairSetPrint print = broad::print_of(pairs);
@@ -168,13 +196,17 @@ Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, 
                 break;
             }
             if (contender.seconds > options.limit) continue;
+            if (at == 0 && guessed_seconds(*contender.info, scene, frames) > options.limit) {
+                contender.seconds = 2 * options.limit;
+                continue;
+            }
             take_turn(contender, scene, frames, at == 0, right, pairs);
         }
     }
     std::vector<PairBenchRow> rows;
     for (Contender& contender : contenders) {
-        if (!contender.engine) continue;
-        sum_up(contender);
+        if (!contender.engine && contender.seconds == 0) continue;  // stopped before its turn
+        if (contender.engine) sum_up(contender);
         rows.push_back(std::move(contender.row));
     }
     return rows;

@@ -16,7 +16,8 @@ struct PairBenchOptions {
     std::string engine =
         "row_grid,peers";      ///< names of pair_engines() with commas between; "peers", "structures", "all"
     std::uint64_t frames = 0;  ///< the first ones; 0: all
-    double limit = 30;         ///< seconds: an engine that has taken longer takes no further part
+    double limit =
+        30;  ///< seconds: an engine that has worked longer, or would for its first turn, takes no further part
 };
 
 /// One engine on one trace.
@@ -38,9 +39,10 @@ struct PairBenchRow {
 using PairBenchProgress =
     std::function<bool(std::uint64_t done, std::uint64_t total, std::string_view trace, std::string_view engine)>;
 
-/// Engines take turns of a few frames each in one run, all with one thread. The pairs of the first frame are held
-/// against a plain sweep, those of the others against the first engine's, all outside of the time that is taken.
-/// Errors: those of the trace reader; BadArgument for unknown names. Stopped: the rows of what was done.
+/// Engines take turns of a few frames each in one run, all with one thread; times are those that the processor worked.
+/// The pairs of the first frame are held against a plain sweep, those of the others against the first engine's, all
+/// outside of the time that is taken. Errors: those of the trace reader; BadArgument for unknown names. Stopped: the
+/// rows of what was done.
 Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& trace, const PairBenchOptions& options,
                                                        const PairBenchProgress& progress);
 

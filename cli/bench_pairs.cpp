@@ -58,8 +58,8 @@ std::string to_table(const std::vector<PairBenchRow>& rows) {
                  "pairs"});
     for (const PairBenchRow& row : rows) {
         if (!is_timed(row)) {
-            table.add_note(row.trace + " " + row.engine,
-                           row.right ? "took too long for a second frame" : "WRONG: other pairs than the first engine");
+            table.add_note(row.trace + " " + row.engine, row.right ? "skipped: would take longer than the limit"
+                                                                   : "WRONG: other pairs than the first engine");
             continue;
         }
         table.add({row.trace, row.engine, fmt::format("{:.3f}", row.ms.median), fmt::format("{:.3f}", row.low),
@@ -137,9 +137,9 @@ void add_bench_pairs(CLI::App& bench_group, Start& start) {
         "\nExamples:\n"
         "  fase generate gas --count 10000 -o gas.aabt && fase bench pairs gas.aabt\n"
         "  fase bench pairs gas.aabt --engine structures --json\n"
-        "\nA frame's time is that of taking its boxes and finding all its pairs, with one thread. Engines take turns "
-        "of "
-        "a\nfew frames in one run. The first frame is not timed; its pairs are held against a plain sweep's.\n"
+        "\nA frame's time is what the processor works to take its boxes and to find all its pairs, with one thread.\n"
+        "Engines take turns of a few frames in one run. The first frame is not timed; its pairs are held against a\n"
+        "plain sweep's.\n"
         "Exit code 1: an engine found other pairs than the first one did.");
     start.on(command, [&bench] { return run_bench_pairs(bench); });
 }

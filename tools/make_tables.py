@@ -35,7 +35,8 @@ PAIR_HEAD = """
 
 From `{figures}`; rows are added with `build/release/fase bench pairs TRACES --csv {figures}`.
 
-A frame is taking its boxes and finding all pairs that overlap, with one thread; two static boxes are no pair. Engines take turns
+A frame is taking its boxes and finding all pairs that overlap, with one thread; times are those that the processor worked
+for it. Two static boxes are no pair. Engines take turns
 of six frames in one run. The pairs of each were the same as those of Fase, and those of the first frame the same as a plain
 sweep's; what finds others has no row. *Times* is the median over that of Fase's `{ours}`. *From, to*: one frame in ten was
 quicker, one in ten slower. *Worst* is the worst frame over the mean. An engine with fewer frames was too slow for all.
