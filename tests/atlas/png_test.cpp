@@ -1,0 +1,212 @@
+/// PNG files in and out: the published suite, broken files, and a way there and back.
+#include "fase/atlas/png.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "fase/core/files.hpp"
+
+namespace fase::atlas {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string suite = std::string(FASE_SHARED_DATA) + "/png/pngsuite";
+
+std::vector<fs::path> files_of_suite(bool broken) {
+    std::vector<fs::path> files;
+    if (!fs::exists(suite)) return files;
+    for (const auto& entry : fs::directory_iterator(suite)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() == ".png" && name != "PngSuite.png" && (name[0] == 'x') == broken)
+            files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+std::vector<std::byte> bytes_of(const fs::path& path) { return *read_file(path.string(), 1 << 20); }
+
+Image any_image(int most_side) {
+    Image image(Size{*rc::gen::inRange(1, most_side), *rc::gen::inRange(1, most_side)});
+    for (std::uint8_t& value : image.pixels) value = *rc::gen::arbitrary<std::uint8_t>();
+    return image;
+}
+std::uint32_t crc_of(std::span<const std::byte> bytes) {
+    std::uint32_t crc = 0xffffffff;
+    for (const std::byte b : bytes) {
+        crc ^= static_cast<std::uint32_t>(b);
+        for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+    }
+    return ~crc;
+}
+void put(std::vector<std::byte>& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::byte>(value >> (24 - 8 * i));
+}
+/// Gives a file's header another width and height, and the right checksum.
+void set_size(std::vector<std::byte>& bytes, std::uint32_t width, std::uint32_t height) {
+    put(bytes, 16, width);
+    put(bytes, 20, height);
+    put(bytes, 29, crc_of(std::span(bytes).subspan(12, 17)));
+}
+
+TEST(Png, ReadsTheWholeSuite) {
+    const std::vector<fs::path> files = files_of_suite(false);
+    if (files.empty()) GTEST_SKIP() << "skipped: no " << suite;
+    EXPECT_GT(files.size(), 150u);
+    for (const fs::path& path : files) {
+        const Result<Image> image = read_png_file(path.string());
+        ASSERT_TRUE(image) << image.error().text();
+        // The suite's names say the size where it is not 32 x 32: s01 to s40, and cd, whose pixels are not square.
+        const std::string name = path.filename().string();
+        const int side = name[0] == 's' && name[1] != 't' ? std::stoi(name.substr(1, 2)) : 0;
+        if (side != 0) {
+            EXPECT_EQ(image->size, Size(side, side)) << name;
+        }
+    }
+}
+
+TEST(Png, ReadsAnInterlacedImageAsItsPlainTwin) {
+    std::size_t twins = 0;
+    for (const fs::path& path : files_of_suite(false)) {
+        const std::string name = path.filename().string();
+        if (!name.starts_with("basi") && !(name[0] == 's' && name[3] == 'i')) continue;
+        std::string twin = name;
+        twin[3] = 'n';
+        const Result<Image> a = read_png_file(path.string()), b = read_png_file((path.parent_path() / twin).string());
+        ASSERT_TRUE(a) << name;
+        ASSERT_TRUE(b) << twin;
+        EXPECT_EQ(*a, *b) << name;
+        ++twins;
+    }
+    if (twins == 0) GTEST_SKIP() << "skipped: no " << suite;
+    EXPECT_EQ(twins, 33u);
+}
+
+TEST(Png, ReadsTransparency) {
+    if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
+    for (const char* name : {"tbbn0g04", "tbbn2c16", "tbbn3p08", "tm3n3p02", "basn4a08", "basn6a16"}) {
+        const Result<Image> image = read_png_file(suite + "/" + name + ".png");
+        ASSERT_TRUE(image) << name;
+        std::size_t clear = 0, other = 0;
+        for (std::size_t i = 3; i < image->pixels.size(); i += 4) (image->pixels[i] < 128 ? clear : other) += 1;
+        EXPECT_GT(clear, 0u) << name;
+        EXPECT_GT(other, 0u) << name;
+    }
+}
+
+TEST(Png, RefusesEachBrokenFileOfTheSuite) {
+    const std::vector<fs::path> files = files_of_suite(true);
+    if (files.empty()) GTEST_SKIP() << "skipped: no " << suite;
+    EXPECT_EQ(files.size(), 14u);
+    for (const fs::path& path : files) {
+        const Result<Image> image = read_png_file(path.string());
+        ASSERT_FALSE(image) << path;
+        EXPECT_EQ(image.status(), Status::Format) << path;
+        EXPECT_TRUE(image.error().where.starts_with(path.string() + ":")) << image.error().text();
+        EXPECT_EQ(image.error().text().find('\n'), std::string::npos);
+    }
+}
+
+TEST(Png, RefusesAFileCutAnywhere) {
+    std::vector<fs::path> files = files_of_suite(false);
+    if (files.empty()) GTEST_SKIP() << "skipped: no " << suite;
+    for (std::size_t f = 0; f < files.size(); f += 5) {
+        const std::vector<std::byte> bytes = bytes_of(files[f]);
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
+            const std::vector<std::byte> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+            ASSERT_FALSE(read_png(cut, "cut")) << files[f] << " of " << size << " bytes";
+        }
+    }
+}
+
+TEST(Png, SurvivesAWrongBitAnywhere) {
+    if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
+    for (const char* name : {"basn3p08", "basi6a16", "tbbn3p08", "basn0g01"}) {
+        const std::vector<std::byte> bytes = bytes_of(suite + "/" + name + ".png");
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            std::vector<std::byte> wrong = bytes;
+            wrong[i] ^= std::byte{static_cast<unsigned char>(1u << i % 8)};
+            ASSERT_FALSE(read_png(wrong, "wrong")) << name << ": each byte is under a checksum, byte " << i;
+        }
+    }
+}
+
+TEST(Png, RefusesSizesThatCannotBe) {
+    const std::vector<std::byte> good = *write_png(Image(Size{3, 2}));
+    ASSERT_TRUE(read_png(good, "good"));
+    for (const auto& [width, height, words] :
+         {std::tuple(0x7fffffffu, 0x7fffffffu, "image expands to"), std::tuple(0x80000000u, 1u, "broken"),
+          std::tuple(0u, 5u, "broken"), std::tuple(8193u, 8192u, "image expands to"),
+          std::tuple(8192u, 8192u, "need at least"), std::tuple(4u, 2u, "broken"), std::tuple(3u, 3u, "broken")}) {
+        std::vector<std::byte> bytes = good;
+        set_size(bytes, width, height);
+        const Result<Image> image = read_png(bytes, "file.png");
+        ASSERT_FALSE(image) << width << " x " << height;
+        EXPECT_NE(image.error().problem.find(words), std::string::npos) << image.error().text();
+    }
+}
+
+TEST(Png, RefusesAPaletteIndexWithoutAColour) {
+    if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
+    std::vector<std::byte> bytes = bytes_of(suite + "/basn3p08.png");
+    const char word[] = "PLTE";
+    const auto at = std::search(bytes.begin(), bytes.end(), word, word + 4,
+                                [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
+    ASSERT_NE(at, bytes.end());
+    const auto start = static_cast<std::size_t>(at - bytes.begin());
+    // All colours but two leave the palette.
+    const std::size_t old = 3 * 256;
+    bytes.erase(at + 4 + 6, at + 4 + static_cast<std::ptrdiff_t>(old));
+    put(bytes, start - 4, 6);
+    put(bytes, start + 4 + 6, crc_of(std::span(bytes).subspan(start, 4 + 6)));
+    const Result<Image> image = read_png(bytes, "file.png");
+    ASSERT_FALSE(image);
+    EXPECT_NE(image.error().problem.find("palette index"), std::string::npos) << image.error().text();
+}
+
+TEST(Png, RefusesWhatIsNoFile) {
+    EXPECT_EQ(read_png_file("/nowhere/at/all.png").status(), Status::Io);
+    EXPECT_EQ(read_png_file("/").status(), Status::Format);
+    EXPECT_EQ(write_png(Image()).status(), Status::BadArgument);
+    EXPECT_EQ(read_png({}, "empty").status(), Status::Format);
+}
+
+RC_GTEST_PROP(Png, ComesBackAsItWent, ()) {
+    const Image image = any_image(12);
+    const Result<std::vector<std::byte>> bytes = write_png(image);
+    RC_ASSERT(bytes.has_value());
+    const Result<Image> back = read_png(*bytes, "back");
+    RC_ASSERT(back.has_value());
+    RC_ASSERT(*back == image);
+}
+
+RC_GTEST_PROP(Image, VisiblePartHoldsAllThatShows, ()) {
+    Image image(Size{*rc::gen::inRange(1, 12), *rc::gen::inRange(1, 12)});
+    for (int n = *rc::gen::inRange(0, 4); n > 0; --n)
+        image.at(*rc::gen::inRange(0, image.size.width), *rc::gen::inRange(0, image.size.height))[3] = 9;
+    const Area part = visible_part(image);
+    Area least{image.size.width, image.size.height, 0, 0};
+    int right = 0, bottom = 0;
+    for (int y = 0; y < image.size.height; ++y)
+        for (int x = 0; x < image.size.width; ++x)
+            if (image.at(x, y)[3] != 0) {
+                least.x = std::min(least.x, x);
+                least.y = std::min(least.y, y);
+                right = std::max(right, x + 1);
+                bottom = std::max(bottom, y + 1);
+            }
+    if (right == 0) {
+        RC_ASSERT(part == (Area{0, 0, 1, 1}));
+    } else {
+        RC_ASSERT(part == (Area{least.x, least.y, right - least.x, bottom - least.y}));
+    }
+    RC_ASSERT(cut_out(image, part).size == (Size{part.width, part.height}));
+}
+
+}  // namespace
+}  // namespace fase::atlas
