@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -15,8 +15,14 @@
 namespace fase::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+/// What the processor worked for this program, all threads together: other programs hardly count.
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const { return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC; }
+
+private:
+    std::clock_t begin_ = std::clock();
+};
 
 /// What one contender answered to the first questions of one kind.
 struct Answers {
@@ -58,10 +64,10 @@ void run(QueryContender& contender, const QueryScene& scene, QueryKind kind, std
         const std::size_t first = all * piece / pieces, end = all * (piece + 1) / pieces;
         if (end > most) break;
         if (scene.moves()) scene.place(piece, moved);
-        const Clock::time_point begin = Clock::now();
+        const Stopwatch watch;
         if (scene.moves()) contender.move(moved);
         ask(contender, scene.questions, kind, first, end - first, answers);
-        answers.seconds += seconds_since(begin);
+        answers.seconds += watch.seconds();
     }
 }
 
@@ -207,9 +213,9 @@ Result<std::vector<QueryRow>> measure_queries(const QueryScene& scene, const Que
         for (const QueryKind kind : all_query_kinds)
             if (entry.contender->offers(kind, scene)) entry.kinds.push_back(kind);
         if (entry.kinds.empty()) continue;
-        const Clock::time_point begin = Clock::now();
+        const Stopwatch watch;
         entry.contender->build(scene);
-        entry.build_ms = 1000 * seconds_since(begin);
+        entry.build_ms = 1000 * watch.seconds();
     }
     Answers answers;
     for (std::size_t round = 0; round <= rounds; ++round) {  // the first is for the check
@@ -221,7 +227,8 @@ Result<std::vector<QueryRow>> measure_queries(const QueryScene& scene, const Que
                 if (scene.moves()) entry.contender->build(scene);
                 run(*entry.contender, scene, kind, question_count(scene.questions, kind), options.seconds, answers);
                 if (round > 0) {
-                    entry.rates[k].push_back(static_cast<double>(answers.count(kind)) / answers.seconds);
+                    entry.rates[k].push_back(static_cast<double>(answers.count(kind)) /
+                                             std::max(answers.seconds, 1e-6));
                     continue;
                 }
                 QueryRow& row = entry.rows.emplace_back();

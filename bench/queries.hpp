@@ -44,8 +44,9 @@ using QueryProgress =
 Result<std::vector<QueryScene>> query_scenes(const QueryOptions& options);
 
 /// Every contender that the options name asked on one scene. They take turns in each round, all in the same minutes of
-/// the same machine. Before anything is timed, all answers of each contender are held against those of the wide tree,
-/// and a part of those against brute force. Errors: BadArgument for a name that is not there. Stopped: no rows.
+/// the same machine; what counts is processor time. Before anything is timed, all answers of each contender are held
+/// against those of the wide tree, and a part of those against brute force. Errors: BadArgument for a name that is not
+/// there. Stopped: no rows.
 Result<std::vector<QueryRow>> measure_queries(const QueryScene& scene, const QueryOptions& options,
                                               const QueryProgress& progress);
 

@@ -111,7 +111,7 @@ Made from `{figures}`. To add rows and renew the page:
 build/release/fase bench queries --mesh building.obj --csv {figures} && tools/make_tables.py
 ```
 
-Thousands of questions a second, one thread, medians over the rounds; in brackets the slowest and the quickest round. *Rays*: the
+Thousands of questions a second of processor time, one thread, medians over the rounds; in brackets the slowest and the quickest round. *Rays*: the
 nearest thing; *boxes*: all that overlap a box; *frusta*: all that a camera may see, copied out. All take turns in
 one run. `static`: boxes that stand; `pile`: boxes that all move in each of 60 frames, following them counts; `level`: the
 triangles of a mesh, their boxes for boxes and frusta. Before anything is timed, every answer is held against those of

@@ -17,10 +17,13 @@ btDbvtVolume to_bullet(const Aabb& box) { return btDbvtVolume::FromMM(to_bullet(
 Proxy proxy_of(const btDbvtNode* leaf) { return static_cast<Proxy>(reinterpret_cast<std::uintptr_t>(leaf->data)); }
 
 /// Calls `visit(proxy)` for each leaf.
-template <class Visit> struct Each : btDbvt::ICollide {
-    explicit Each(Visit visit) : visit(std::move(visit)) {}
-    void Process(const btDbvtNode* leaf) override { visit(proxy_of(leaf)); }
-    Visit visit;
+template <class Visit> class Each : public btDbvt::ICollide {
+public:
+    explicit Each(Visit visit) : visit_(std::move(visit)) {}
+    void Process(const btDbvtNode* leaf) override { visit_(proxy_of(leaf)); }
+
+private:
+    Visit visit_;
 };
 
 class BulletDbvt final : public QueryContender {
