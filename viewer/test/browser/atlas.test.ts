@@ -53,7 +53,7 @@ const sheet = new URLSearchParams(location.search).get("sheet");
 const page = `<!doctype html><meta charset="utf-8"><title>atlas</title><link rel="icon" href="data:,">
 <style>body { margin: 0; background: #456 }</style><body><script src="/pixi.js"></script><script src="/page.js"></script>`;
 
-/** An image whose pixels all differ, opaque except for `edge` transparent pixels all around. */
+/** An image of many colours without symmetry, opaque except for `edge` transparent pixels all around. */
 function speckled(w: number, h: number, seed: number, edge = 0): Picture {
   const pixels = new Uint8Array(4 * w * h);
   for (let y = edge; y < h - edge; ++y)
