@@ -11,6 +11,12 @@
 
 namespace fase::broad {
 
+/// A region for which AnyStructure has no walk of its own. (A lambda fits a template better than a FunctionRef: without
+/// the requirement the general walk would be taken for every region.)
+template <class R>
+concept OtherRegion =
+    Region<R> && !std::same_as<R, BoxRegion> && !std::same_as<R, FrustumRegion> && !std::same_as<R, Everything>;
+
 /// One structure of the registry behind calls that hand over many boxes at once: one branch a call, none a box. The
 /// contracts are those of the concept Structure; default: the default structure, empty. Copies are deep.
 class AnyStructure {
@@ -56,7 +62,7 @@ public:
     void traverse(const FrustumRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
     void traverse(const Everything& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
     /// For any other region: an indirect call a node more.
-    template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
+    template <OtherRegion R, class Visit> void traverse(const R& region, Visit&& visit) const {
         const auto touches = [&region](const Aabb& box) { return region.touches(box); };
         traverse_any(AnyRegion(touches, region.bounds()), visit);
     }
