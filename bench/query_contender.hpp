@@ -54,7 +54,7 @@ struct QueryContenderInfo {
     std::unique_ptr<QueryContender> (*make)(std::string_view name);
 };
 
-/// THE list: each structure of the registry, meshes for rays, then each peer that was found.
+/// THE list: each structure of the registry, meshes for rays, the floor for cameras, then each peer that was found.
 [[nodiscard]] std::span<const QueryContenderInfo> query_contenders();
 
 /// Where a ray meets a triangle of the scene's mesh, metres; beyond: it does not. In double, both sides. Source:

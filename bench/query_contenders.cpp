@@ -92,6 +92,40 @@ private:
     query::RayMesh mesh_;
 };
 
+/// What is seen lies ready and is copied out: no way to find it can be quicker.
+class Copying final : public QueryContender {
+public:
+    [[nodiscard]] bool offers(QueryKind kind, const QueryScene& scene) const override {
+        return kind == QueryKind::Frusta && !scene.moves();
+    }
+    void build(const QueryScene& scene) override {
+        RegistryContender tree("wide_bvh");
+        tree.build(scene);
+        answers_.clear();
+        tree.frusta(scene.questions.frusta, answers_);
+        first_ = scene.questions.frusta.data();
+    }
+    void move(std::span<const broad::Move>) override {}
+    void rays(std::span<const Ray>, std::vector<query::Hit>&) const override {}
+    void boxes(std::span<const Aabb>, Lists&) const override {}
+    /// Of the scene's own frusta alone.
+    void frusta(std::span<const Frustum> frusta, Lists& out) const override {
+        for (const Frustum& frustum : frusta) {
+            const auto at = static_cast<std::size_t>(&frustum - first_);
+            const auto begin = answers_.proxies.begin();
+            out.proxies.insert(out.proxies.end(),
+                               begin + static_cast<std::ptrdiff_t>(at == 0 ? 0 : answers_.ends[at - 1]),
+                               begin + static_cast<std::ptrdiff_t>(answers_.ends[at]));
+            out.ends.push_back(out.proxies.size());
+        }
+    }
+    [[nodiscard]] std::string settings() const override { return "the floor: ids that lie ready are copied out"; }
+
+private:
+    Lists answers_;
+    const Frustum* first_ = nullptr;
+};
+
 template <class Contender> std::unique_ptr<QueryContender> make(std::string_view name) {
     if constexpr (std::is_constructible_v<Contender, std::string_view>) {
         return std::make_unique<Contender>(name);
@@ -106,6 +140,7 @@ std::vector<QueryContenderInfo> make_list() {
         list.push_back({std::string(S::info.name), make<RegistryContender>});
     });
     list.push_back({"ray_mesh", make<MeshContender>});
+    list.push_back({"copy", make<Copying>});
 #ifdef FASE_PEER_EMBREE
     list.push_back({"embree", make_embree});
 #endif

@@ -125,10 +125,10 @@ void add_bench_queries(CLI::App& bench_group, Start& start) {
         "\nExamples:\n"
         "  fase bench queries --scene static --contender wide_bvh,embree\n"
         "  fase bench queries --scene level --mesh building.obj --json\n"
-        "\nAll take turns in one run, so that a noisy machine is noisy for all. In the scene pile all boxes move in "
-        "each\n"
-        "frame, and following them counts. Before it is timed, each answer is held against ours, and a part of ours\n"
-        "against brute force. Exit code 1: a structure of ours gave another answer.");
+        "\nAll take turns in one run, so that a noisy machine is noisy for all; processor time counts. In the scene\n"
+        "pile all boxes move in each frame, and following them counts. Before it is timed, each answer is held\n"
+        "against ours, and a part of ours against brute force.\n"
+        "Exit code 1: a structure of ours gave another answer.");
     start.on(command, [&bench] { return run_bench_queries(bench); });
 }
 
