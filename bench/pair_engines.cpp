@@ -16,7 +16,7 @@ public:
     void update(std::span<const Aabb> boxes) override { finder_.update(boxes); }
     void find_pairs(std::vector<Pair>& out) override { finder_.find_pairs(*tasks_, out); }
     [[nodiscard]] std::string settings() const override { return "Fase, " + name_; }
-    [[nodiscard]] std::size_t bytes() const override { return finder_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const override { return finder_.stats().bytes; }
 
 private:
     std::string name_;

@@ -173,7 +173,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     figures.ms = bench::timing_of(times);
     if (!times.empty()) figures.least_ms = *std::min_element(times.begin(), times.end());
     figures.hash = hash.value();
-    figures.bytes = finder.bytes();
+    figures.stats = finder.stats();
     if (!survey.judged.empty()) figures.right = right;
     return figures;
 }

@@ -28,9 +28,9 @@ struct PairFigures {
     bench::Timing ms;     ///< of a frame: taking the new boxes and finding all current pairs
     double least_ms = 0;  ///< of a frame: what a busy machine disturbs least
     std::uint64_t pairs_first = 0, pairs_last = 0, pairs_sum = 0;  ///< of the first frame, the last one, all
-    std::uint64_t hash = 0;     ///< of the pair sets of all frames; the order of pairs within a frame does not count
-    std::size_t bytes = 0;      ///< of the structures, after the last frame
-    std::optional<bool> right;  ///< whether each frame's pairs are the judge's; none: not asked
+    std::uint64_t hash = 0;       ///< of the pair sets of all frames; the order of pairs within a frame does not count
+    broad::StructureStats stats;  ///< of the structures, after the last frame
+    std::optional<bool> right;    ///< whether each frame's pairs are the judge's; none: not asked
 };
 
 /// A look at a trace before it is measured.

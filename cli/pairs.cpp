@@ -26,12 +26,13 @@ std::string json_of(const PairFigures& row) {
             "\"frames\": {}, \"build_ms\": {:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": "
             "{:.6g}, \"least\": {:.6g}}}, "
             "\"pairs_first\": {}, \"pairs_last\": {}, \"pairs_sum\": {}, \"hash\": \"{:016x}\", \"bytes\": {}, "
-            "\"checked\": {}, ",
+            "\"depth\": {}, \"nodes\": {}, \"boxes_per_leaf\": {:.4g}, \"checked\": {}, ",
             row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.least_ms, row.pairs_first,
-            row.pairs_last, row.pairs_sum, row.hash, row.bytes, row.right ? (*row.right ? "true" : "false") : "null");
+            row.pairs_last, row.pairs_sum, row.hash, row.stats.bytes, row.stats.depth, row.stats.nodes,
+            row.stats.occupancy(), row.right ? (*row.right ? "true" : "false") : "null");
     } else {
-        for (const char* key :
-             {"frames", "build_ms", "ms", "pairs_first", "pairs_last", "pairs_sum", "hash", "bytes", "checked"})
+        for (const char* key : {"frames", "build_ms", "ms", "pairs_first", "pairs_last", "pairs_sum", "hash", "bytes",
+                                "depth", "nodes", "boxes_per_leaf", "checked"})
             text += fmt::format("\"{}\": null, ", key);
     }
     return text + fmt::format("\"chosen\": {}, \"skipped\": {}}}", scene::quoted(row.chosen),
@@ -46,7 +47,7 @@ std::string to_json(const std::vector<PairFigures>& rows) {
 
 std::string to_table(const std::vector<PairFigures>& rows) {
     Table table({"structure", "build ms", "mean ms", "median ms", "worst ms", "pairs first", "pairs last", "pairs sum",
-                 "bytes", "hash", "check"});
+                 "bytes", "depth", "a leaf", "hash", "check"});
     for (const PairFigures& row : rows) {
         const std::string name = row.structure == row.chosen ? row.structure : row.structure + ": " + row.chosen;
         if (!row.skipped.empty()) {
@@ -56,7 +57,8 @@ std::string to_table(const std::vector<PairFigures>& rows) {
         table.add({name, fmt::format("{:.3f}", row.build_ms), fmt::format("{:.3f}", row.ms.mean),
                    fmt::format("{:.3f}", row.ms.median), fmt::format("{:.3f}", row.ms.worst),
                    std::to_string(row.pairs_first), std::to_string(row.pairs_last), std::to_string(row.pairs_sum),
-                   std::to_string(row.bytes), fmt::format("{:016x}", row.hash),
+                   std::to_string(row.stats.bytes), std::to_string(row.stats.depth),
+                   fmt::format("{:.1f}", row.stats.occupancy()), fmt::format("{:016x}", row.hash),
                    row.right ? (*row.right ? "ok" : "WRONG") : "-"});
     }
     return table.text();

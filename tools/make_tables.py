@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/benchmarks.md from the measured figures in bench/results: step.csv, pairs.csv and queries.csv.
+"""Writes docs/benchmarks.md from the figures in bench/results (step, structures, pairs and queries).
 
 Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when the page is not what the
 figures give. Of several rows for one machine, scene, engine and number of threads the last one in the file counts.
@@ -195,12 +195,43 @@ def pair_page_of(path):
     return "\n".join(parts)
 
 
+STRUCTURE_FIGURES = "bench/results/structures.csv"
+STRUCTURE_HEAD = """
+# Structures side by side
+
+Made from `{figures}`. To renew it: `tools/measure_structures.py && tools/make_tables.py`.
+
+Traces of `fase generate`, played by `fase pairs`; one thread. A frame's time is that of taking its boxes and finding all its pairs, which
+were those of the judge in every frame. In a cell: median ms (worst), bytes a box, depth, boxes in a leaf.
+"""
+
+
+def structure_page_of(path):
+    """A table a machine: a line a structure, a column a trace."""
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    parts = [STRUCTURE_HEAD.format(figures=STRUCTURE_FIGURES)]
+    for machine in dict.fromkeys(row["machine"] for row in rows):
+        mine = [row for row in rows if row["machine"] == machine]
+        traces = list(dict.fromkeys(row["trace"] for row in mine))
+        cells = {(row["structure"], row["trace"]): f"{float(row['median_ms']):.2f} ({float(row['worst_ms']):.1f}), "
+                 f"{row['bytes_a_box']}, {row['depth']}, {float(row['boxes_a_leaf']):.1f}" for row in mine}
+        lines = [f"## {mine[0]['boxes']} boxes, {machine}, {mine[0]['commit']}, {mine[0]['date']}", "",
+                 line_of(["structure", *traces]), line_of(["---"] * (len(traces) + 1))]
+        for structure in dict.fromkeys(row["structure"] for row in mine):
+            lines.append(line_of([structure, *(cells.get((structure, trace), "") for trace in traces)]))
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
 def main(arguments):
     check = "--check" in arguments
     folders = [argument for argument in arguments if argument != "--check"]
     root = Path(folders[0] if folders else Path(__file__).parent.parent)
     figures, page = root / FIGURES, root / PAGE
     text = page_of(read_rows(figures))
+    if (root / STRUCTURE_FIGURES).is_file():
+        text += structure_page_of(root / STRUCTURE_FIGURES)
     if (root / PAIR_FIGURES).is_file():
         text += pair_page_of(root / PAIR_FIGURES)
     if (root / QUERY_FIGURES).is_file():

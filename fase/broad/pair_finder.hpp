@@ -35,8 +35,8 @@ public:
     [[nodiscard]] std::size_t awake() const { return awake_.size(); }
     /// Pairs of two that rest.
     [[nodiscard]] std::span<const Pair> resting_pairs() const { return resting_; }
-    /// Memory of the three structures.
-    [[nodiscard]] std::size_t bytes() const { return awake_.bytes() + asleep_.bytes() + static_.bytes(); }
+    /// Of the three structures together.
+    [[nodiscard]] StructureStats stats() const { return awake_.stats() + asleep_.stats() + static_.stats(); }
     /// "" when all is well; else what is not.
     [[nodiscard]] std::string broken_invariant() const;
 

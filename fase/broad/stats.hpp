@@ -19,6 +19,17 @@ struct StructureStats {
     }
 };
 
+/// Of two sets of boxes that stand in structures of their own.
+[[nodiscard]] inline StructureStats operator+(const StructureStats& a, const StructureStats& b) {
+    return {.boxes = a.boxes + b.boxes,
+            .nodes = a.nodes + b.nodes,
+            .leaves = a.leaves + b.leaves,
+            .entries = a.entries + b.entries,
+            .largest_leaf = a.largest_leaf > b.largest_leaf ? a.largest_leaf : b.largest_leaf,
+            .depth = a.depth > b.depth ? a.depth : b.depth,
+            .bytes = a.bytes + b.bytes};
+}
+
 /// O(n).
 template <Structure S> [[nodiscard]] StructureStats stats_of(const S& structure) {
     StructureStats stats{.boxes = structure.size(), .nodes = structure.nodes(), .bytes = structure.bytes()};

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Times every structure on traces made by rule and writes bench/results/structures.csv.
+
+Usage: measure_structures.py [--program build/release/fase] [--count 10000] [--frames 40] [REPOSITORY]. Each trace is made by
+`fase generate`, and its pairs are held against the judge before its row is written. Then tools/make_tables.py.
+"""
+import argparse
+import csv
+import datetime
+import json
+import platform
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+KINDS = ["uniform", "clusters", "flat", "mixed", "static", "asleep", "coincident", "lattice", "explosion", "rain", "pile"]
+FIELDS = ["machine", "date", "commit", "trace", "boxes", "frames", "structure", "build_ms", "mean_ms", "median_ms", "worst_ms",
+          "bytes_a_box", "depth", "boxes_a_leaf", "pairs"]
+
+
+def machine_name():
+    """The processor's name and the number of its cores that may be used."""
+    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def rows_of(program, kind, count, frames, folder):
+    """One dictionary a structure, measured on a fresh trace of that kind."""
+    trace = Path(folder) / f"{kind}.aabt"
+    subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
+                   stdout=subprocess.DEVNULL)
+    told = subprocess.run([program, "pairs", trace, "--structure", "all", "--check", "--json"], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+    for row in json.loads(told):
+        if row["skipped"] is None:
+            yield {"trace": kind, "boxes": count, "frames": row["frames"], "structure": row["structure"],
+                   "build_ms": row["build_ms"], "mean_ms": row["ms"]["mean"], "median_ms": row["ms"]["median"],
+                   "worst_ms": row["ms"]["worst"], "bytes_a_box": round(row["bytes"] / count), "depth": row["depth"],
+                   "boxes_a_leaf": row["boxes_per_leaf"], "pairs": row["pairs_last"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default="build/release/fase")
+    parser.add_argument("--count", type=int, default=10000)
+    parser.add_argument("--frames", type=int, default=40)
+    parser.add_argument("repository", nargs="?", default=Path(__file__).parent.parent, type=Path)
+    options = parser.parse_args()
+    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
+                            stdout=subprocess.PIPE, text=True).stdout.strip()
+    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    with tempfile.TemporaryDirectory() as folder:
+        rows = [about | row for kind in KINDS
+                for row in rows_of(str(options.program), kind, options.count, options.frames, folder)]
+    with (options.repository / "bench/results/structures.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
