@@ -65,11 +65,9 @@ struct Filled {
 /// The tries at one packing after the other.
 class Packer {
 public:
-    Packer(const PackOptions& options, std::vector<Kind> kinds, std::vector<std::uint32_t> counts)
-        : options_(options),
-          bench_(std::move(kinds), options.rotate),
-          counts_(std::move(counts)),
-          start_(Clock::now()) {}
+    Packer(const PackOptions& options, std::vector<Kind> kinds, std::vector<std::uint32_t> counts,
+           Clock::time_point start)
+        : options_(options), bench_(std::move(kinds), options.rotate), counts_(std::move(counts)), start_(start) {}
 
     Packing pack(std::span<const Size> cells, std::vector<std::vector<std::uint32_t>> of_kind);
 
@@ -82,10 +80,10 @@ private:
     [[nodiscard]] double spent_ms() const {
         return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
     }
-    /// Whether this page may have another try; by time, one as long as the last must fit.
+    /// Whether this page may have another try; by time, one as long as the longest must fit.
     [[nodiscard]] bool may_try() const {
         if (options_.tries > 0) return page_tries_ < options_.tries;
-        return spent_ms() + last_try_ms_ < page_end_ms_;
+        return spent_ms() + longest_try_ms_ < page_end_ms_;
     }
     /// Tries rules on a page and keeps the outcome when it is better: less left over, or a smaller page for all.
     bool attempt(std::uint32_t number, Size page, std::int64_t most_lost);
@@ -100,7 +98,7 @@ private:
     TryBench bench_;
     std::vector<std::uint32_t> counts_;
     Clock::time_point start_;
-    double page_end_ms_ = 0, last_try_ms_ = 0;
+    double page_end_ms_ = 0, longest_try_ms_ = 0;
     int page_tries_ = 0, tries_ = 0;
     Filled best_;
     std::vector<Laid> laid_;
@@ -112,7 +110,7 @@ bool Packer::attempt(std::uint32_t number, Size page, std::int64_t most_lost) {
     ++tries_;
     const double begun_ms = spent_ms();
     const std::int64_t left = bench_.fill(rules, page, counts_, most_lost, laid_);
-    last_try_ms_ = spent_ms() - begun_ms;
+    longest_try_ms_ = std::max(longest_try_ms_, spent_ms() - begun_ms);
     // Only what may leave something over counts as an outcome when it does: others were broken off.
     if (left > 0 && most_lost != no_limit) return false;
     const bool better = left < best_.left || (left == best_.left && area_of(page) < area_of(best_.page));
@@ -194,6 +192,7 @@ void Packer::fill_power_of_two(std::int64_t area, int limit) {
 void Packer::fill_page(std::int64_t area) {
     best_ = {};
     page_tries_ = 0;
+    longest_try_ms_ = 0;
     const int limit = options_.max_side + options_.padding;
     // Each page that is to come gets an equal share of the time that is left.
     const double spent = spent_ms();
@@ -240,6 +239,7 @@ double Packing::occupancy(std::span<const Size> sizes) const {
 }
 
 Result<Packing> pack(std::span<const Size> sizes, const PackOptions& options) {
+    const Clock::time_point start = Clock::now();
     if (auto checked = check(sizes, options, 0); !checked) return checked.error();
     std::vector<Size> cells;
     cells.reserve(sizes.size());
@@ -268,7 +268,7 @@ Result<Packing> pack(std::span<const Size> sizes, const PackOptions& options) {
         ++counts.back();
         of_kind.back().push_back(i);
     }
-    return Packer(options, std::move(kinds), std::move(counts)).pack(cells, std::move(of_kind));
+    return Packer(options, std::move(kinds), std::move(counts), start).pack(cells, std::move(of_kind));
 }
 
 Result<void> add(Packing& packing, std::span<const Size> there, std::span<const Size> more,
