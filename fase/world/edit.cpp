@@ -24,6 +24,7 @@ void renew_box(WorldState& state, std::uint32_t collider) {
     const broad::Move move{collider, state.boxes[collider]};
     broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[state.colliders[collider].body].population);
     boxes.move(std::span(&move, 1));
+    note_box(state, collider);
     if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);
     state.changes[collider] |= edited;
 }

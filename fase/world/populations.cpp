@@ -10,7 +10,6 @@ using dynamics::no_index;
 using dynamics::Population;
 
 broad::AnyStructure& boxes_of(WorldState& state, Population population) {
-    state.query.ready.store(false, std::memory_order_relaxed);
     switch (population) {
         case Population::Static: return state.static_boxes;
         case Population::Asleep: return state.asleep_boxes;
@@ -52,6 +51,7 @@ void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, Popula
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
             state.askers.push_back({c, state.boxes[c]});
             state.scratch.push_back(c);
+            note_box(state, c);
         }
     boxes_of(state, from).erase(state.scratch);
     boxes_of(state, to).insert(state.askers);

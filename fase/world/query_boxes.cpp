@@ -1,4 +1,4 @@
-/// Measures how far shapes stick out of the boxes that stand for them.
+/// Keeps the trees of queries up to date, and measures how far shapes stick out of the boxes in them.
 #include "fase/world/query_boxes.hpp"
 
 namespace fase {
@@ -58,20 +58,92 @@ void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodie
                 std::max(state.query.asleep_overhang, overhang_of(state.boxes[c], world_queries::tight_box(state, c)));
 }
 
-void world_queries::make_ready(const WorldState& state) {
+void note_box(const WorldState& state, std::uint32_t collider) {
     QueryBoxes& query = state.query;
-    if (query.ready.load(std::memory_order_acquire)) return;
-    const std::lock_guard guard(query.lock);
-    if (query.ready.load(std::memory_order_relaxed)) return;
-    for (broad::AnyStructure* set : {&state.static_boxes, &state.asleep_boxes, &state.awake_boxes}) set->commit();
+    query.ready.store(false, std::memory_order_relaxed);
+    if (!query.kept) return;
+    if (query.place.size() <= collider) query.place.resize(state.colliders.size(), 0);
+    if (query.place[collider] & QueryBoxes::is_noted) return;
+    query.place[collider] |= QueryBoxes::is_noted;
+    query.noted.push_back(collider);
+}
+
+namespace {
+
+/// Where the collider's box belongs: 0, or 1 + the population of its body.
+std::uint8_t place_of(const WorldState& state, std::uint32_t collider) {
+    if (!state.collider_ids.alive_at(collider)) return 0;
+    const dynamics::Population population = state.bodies.traits[state.colliders[collider].body].population;
+    return static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(population));
+}
+
+void fill_trees(const WorldState& state) {
+    QueryBoxes& query = state.query;
+    std::array<std::vector<broad::Move>, 3> boxes;
+    query.place.assign(state.colliders.size(), 0);
+    query.noted.clear();
+    for (std::uint32_t c = 0; c < state.colliders.size(); ++c) {
+        query.place[c] = place_of(state, c);
+        if (query.place[c] != 0) boxes[query.place[c] - 1u].push_back({c, state.boxes[c]});
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) query.trees[i].build(boxes[i]);
+    query.kept = true;
+}
+
+void take_over_noted(const WorldState& state) {
+    QueryBoxes& query = state.query;
+    for (const std::uint32_t c : query.noted) {
+        const auto before = static_cast<std::uint8_t>(query.place[c] & ~QueryBoxes::is_noted);
+        const std::uint8_t now = place_of(state, c);
+        query.place[c] = now;
+        if (before != 0 && before == now) {
+            query.trees[now - 1u].move(c, state.boxes[c]);
+        } else {
+            if (before != 0) query.trees[before - 1u].erase(c);
+            if (now != 0) query.trees[now - 1u].insert(c, state.boxes[c]);
+        }
+    }
+    query.noted.clear();
+    for (broad::WideBvh& tree : query.trees) tree.commit();
+}
+
+void bring_up_to_date(const WorldState& state) {
+    QueryBoxes& query = state.query;
+    if (query.kept) {
+        take_over_noted(state);
+    } else {
+        fill_trees(state);
+    }
     if (query.bodies_moved) {
         find_strays(state);
         query.bodies_moved = false;
     }
     // A stray may have been edited or removed since.
     std::erase_if(query.strays, [&](const broad::Move& m) { return !state.collider_ids.alive_at(m.proxy); });
-    for (broad::Move& stray : query.strays) stray.box = tight_box(state, stray.proxy);
+    for (broad::Move& stray : query.strays) stray.box = world_queries::tight_box(state, stray.proxy);
     query.ready.store(true, std::memory_order_release);
+}
+
+}  // namespace
+
+void world_queries::make_ready(const WorldState& state) {
+    QueryBoxes& query = state.query;
+    if (!query.asked.load(std::memory_order_relaxed)) query.asked.store(true, std::memory_order_relaxed);
+    if (query.ready.load(std::memory_order_acquire)) return;
+    const std::lock_guard guard(query.lock);
+    if (!query.ready.load(std::memory_order_relaxed)) bring_up_to_date(state);
+}
+
+void keep_query_boxes(WorldState& state) {
+    constexpr std::uint32_t patience = 60;  // steps
+    QueryBoxes& query = state.query;
+    query.steps_unasked = query.asked.exchange(false, std::memory_order_relaxed) ? 0 : query.steps_unasked + 1;
+    if (!query.kept) return;
+    if (query.steps_unasked < patience) return bring_up_to_date(state);
+    for (broad::WideBvh& tree : query.trees) tree = {};
+    query.place = {};
+    query.noted = {};
+    query.kept = false;
 }
 
 }  // namespace fase

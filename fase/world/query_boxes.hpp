@@ -1,12 +1,12 @@
 #pragma once
 /// How queries go through the boxes of a world as it stands, whatever was edited or moved since they were stored.
 ///
-/// Two things stand between a query and the three sets of boxes. Edits between steps change the sets and leave them
-/// uncommitted: the first query after them commits. And a step moves bodies after it stored their boxes, so that at
-/// its end shapes may stick out of them: for nearly all by less than the boxes are grown. The rest is measured once, by
-/// the first query after the step: the few that stick out farthest (strays) are asked one by one, and the farthest of
-/// the others (the overhang) is how much wider all others are looked for. Nothing of this touches the state that is
-/// hashed, saved or stepped.
+/// Queries have trees of their own, one for each population. Two things stand between a query and them. Edits between
+/// steps are noted: the first query after them takes them over. And a step moves bodies after it stored their boxes, so
+/// that at its end shapes may stick out of them: for nearly all by less than the boxes are grown. The rest is measured
+/// once, at the end of the step or by the first query: the few that stick out farthest (strays) are asked one by one,
+/// and the farthest of the others (the overhang) is how much wider all others are looked for. Nothing of this touches
+/// the state that is hashed, saved or stepped.
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +15,8 @@
 
 namespace fase::world_queries {
 
-/// Brings `state.query` up to date. Safe from any number of threads between steps. O(1) when nothing changed; else what
-/// committing the sets costs, and after a step some 30 ns an awake collider.
+/// Brings `state.query` up to date. Safe from any number of threads between steps. O(1) when nothing was edited since
+/// the last step and the world was asked before lately; the first query builds the trees, some 0.3 µs a collider.
 void make_ready(const WorldState& state);
 
 /// The world box of a collider's shape as it stands now.
@@ -33,11 +33,12 @@ void make_ready(const WorldState& state);
     return at != strays.end() && at->proxy == collider;
 }
 
-/// Calls f(set, overhang) for each set of boxes that holds any.
+/// Calls f(tree, overhang) for each tree that holds any.
 template <class F> void for_each_set(const WorldState& state, const F& f) {
-    if (state.static_boxes.size() != 0) f(state.static_boxes, 0.0f);
-    if (state.asleep_boxes.size() != 0) f(state.asleep_boxes, state.query.asleep_overhang);
-    if (state.awake_boxes.size() != 0) f(state.awake_boxes, state.query.awake_overhang);
+    const QueryBoxes& query = state.query;
+    const std::array<float, 3> overhang{0, query.asleep_overhang, query.awake_overhang};  // as Population counts
+    for (std::size_t i = 0; i < query.trees.size(); ++i)
+        if (query.trees[i].size() != 0) f(query.trees[i], overhang[i]);
 }
 
 /// The float at or above a double.
@@ -54,7 +55,7 @@ template <class F> void for_each_set(const WorldState& state, const F& f) {
 template <class Visit>
 void along(const WorldState& state, const Ray& ray, Vec3 before, Vec3 after, const Visit& visit) {
     float limit = ray.length;
-    for_each_set(state, [&](const broad::AnyStructure& set, float overhang) {
+    for_each_set(state, [&](const broad::WideBvh& set, float overhang) {
         if (limit < 0) return;
         const Vec3d out{overhang, overhang, overhang};
         const Aabb carried =
@@ -76,7 +77,7 @@ void along(const WorldState& state, const Ray& ray, Vec3 before, Vec3 after, con
 /// Calls visit(collider) once for each collider whose box touches `box`; a `visit` that returns false stops.
 template <class Visit> void around(const WorldState& state, const Aabb& box, const Visit& visit) {
     bool goes_on = true;
-    for_each_set(state, [&](const broad::AnyStructure& set, float overhang) {
+    for_each_set(state, [&](const broad::WideBvh& set, float overhang) {
         if (!goes_on) return;
         set.traverse(broad::BoxRegion{grown(box, overhang)}, [&](broad::Proxy p, const Aabb&) {
             if (!is_stray(state, p)) goes_on = visit(p);
@@ -91,7 +92,7 @@ template <class Visit> void around(const WorldState& state, const Aabb& box, con
 /// colliders are still of interest.
 template <class Visit> void near_point(const WorldState& state, Vec3d point, float radius, const Visit& visit) {
     float limit = radius;
-    for_each_set(state, [&](const broad::AnyStructure& set, float overhang) {
+    for_each_set(state, [&](const broad::WideBvh& set, float overhang) {
         const double more = 1.7320509 * double(overhang);  // along the diagonal
         const auto wider = [&] { return float_above(double(limit) + more); };
         set.nearest_first(broad::PointMeasure(point, wider()), wider(), [&](broad::Proxy p, const Aabb&, float) {
@@ -106,7 +107,7 @@ template <class Visit> void near_point(const WorldState& state, Vec3d point, flo
 /// Calls visit(collider, whole) once for each collider whose box may be seen; `whole`: its shape is wholly inside for
 /// sure.
 template <class Visit> void within(const WorldState& state, const Frustum& frustum, const Visit& visit) {
-    for_each_set(state, [&](const broad::AnyStructure& set, float overhang) {
+    for_each_set(state, [&](const broad::WideBvh& set, float overhang) {
         Frustum wider = frustum;
         for (Frustum::Side& side : wider.sides) {
             const Vec3d size = abs(side.normal);

@@ -10,6 +10,7 @@ using dynamics::no_index;
 void refresh_boxes(WorldState& state, float seconds) {
     wake_wanted_islands(state);
     state.sweep.resize(state.bodies.traits.size(), 0);
+    state.previous_boxes.resize(state.boxes.size());
     parallel_ranges(*state.tasks, state.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = state.awake[i];
@@ -23,21 +24,19 @@ void refresh_boxes(WorldState& state, float seconds) {
                 if (contains(state.boxes[c], box) && !(state.changes[c] & edited)) continue;
                 const Vec3 size = extent(box);
                 const float largest = std::max({size.x, size.y, size.z});
+                state.previous_boxes[c] = state.boxes[c];
                 state.boxes[c] = grown(box, std::min(state.settings.box_margin, 0.25f * largest));
                 state.changes[c] |= moved_box;
             }
         }
     });
     state.moved.clear();
-    state.askers.clear();
     for (const std::uint32_t body : state.awake)
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
             if (state.changes[c] & moved_box) {
                 state.moved.push_back(c);
-                state.askers.push_back({c, state.boxes[c]});
+                note_box(state, c);
             }
-    state.awake_boxes.move(state.askers);
-    state.awake_boxes.commit();
     state.report.boxes_moved = static_cast<std::uint32_t>(state.moved.size());
 }
 

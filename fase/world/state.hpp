@@ -1,5 +1,6 @@
 #pragma once
 /// Everything a world holds, as flat arrays, and the stages of its step.
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/wide_bvh.hpp"
 #include "fase/core/ids.hpp"
 #include "fase/core/tasks.hpp"
 #include "fase/dynamics/bodies.hpp"
@@ -74,13 +76,25 @@ enum ColliderChange : std::uint8_t {
     edited = 2,     ///< the user made, moved or changed it
 };
 
-/// What queries between steps know of the boxes beyond the boxes: the first query after a change brings it up to date,
-/// under the lock (world/query_boxes.hpp). No part of hash or snapshot, and no stage of the step reads it.
+/// The trees that queries between steps go through, and what they know of the boxes beyond the boxes
+/// (world/query_boxes.hpp). The sets of the broad phase are made for finding pairs; rays want a tree. The trees stand
+/// from the first query on: what changes is noted, and taken over at the end of each step, or by the first query after
+/// an edit, under the lock. A world that nobody asks for long lets go of them. No part of hash or snapshot, and no
+/// stage that moves anything reads it.
 struct QueryBoxes {
-    std::atomic<bool> ready = false;  ///< the sets are committed, and all that follows is current
+    std::atomic<bool> ready = false;  ///< the trees are committed, and all that follows is current
+    std::atomic<bool> asked = false;  ///< since the last step
     std::mutex lock;
+    bool kept = false;  ///< the trees stand
+    std::uint32_t steps_unasked = 0;
+    std::array<broad::WideBvh, 3> trees;  ///< by Population
+    /// By collider: 0, or 1 + the population in whose tree its box stands; `is_noted` while it is in `noted`.
+    std::vector<std::uint8_t> place;
+    static constexpr std::uint8_t is_noted = 0x80;
+    std::vector<std::uint32_t> noted;  ///< colliders that came, went, moved or changed their population
+
     bool bodies_moved = true;  ///< a step moved bodies since `strays` and `awake_overhang` were found
-    /// Metres by which shapes may stick out of the boxes that stand for them in the set, on every side.
+    /// Metres by which shapes may stick out of the boxes that stand for them in the tree, on every side.
     float asleep_overhang = 0, awake_overhang = 0;
     /// The few awake colliders that stick out farthest, by index, with their boxes as they are: they count in no
     /// overhang.
@@ -97,7 +111,7 @@ struct WorldState {
     IdPool<ColliderTag> collider_ids;
     std::vector<Collider> colliders;
     std::vector<Aabb> boxes;            ///< grown, by collider
-    std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider
+    std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider; those of removed ones are `edited`
     std::vector<SharedShape> shapes;
     std::vector<std::uint32_t> free_shapes;
     pairs::PairExclusions exclusions;
@@ -120,15 +134,16 @@ struct WorldState {
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
-    // Mutable: the first query after edits commits them.
-    mutable broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
-    mutable QueryBoxes query;
+    broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
+    mutable QueryBoxes query;  // mutable: the first query after a change brings it up to date
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;
     std::vector<float> sweep;  ///< by body: metres a fast body may move in this step, else 0
     std::vector<broad::Move> askers;
     std::vector<broad::Pair> candidates;
+    std::vector<Aabb> previous_boxes;     ///< by collider: of those in `moved`, the box before this step
+    PairList spare_list;                  ///< what a pair list grows into
     std::vector<std::uint32_t> moved;     ///< colliders whose box left its grown box in this step
     std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
     std::vector<std::uint8_t> reused;     ///< by active pair: the manifold was kept
@@ -139,6 +154,8 @@ struct WorldState {
 
 /// The broad-phase set in which a population's boxes stand, to be changed.
 [[nodiscard]] broad::AnyStructure& boxes_of(WorldState& state, dynamics::Population population);
+/// To be told whenever a collider comes, goes, gets another box or its body another population: for the queries' trees.
+void note_box(const WorldState& state, std::uint32_t collider);
 
 // Lists and populations (world/populations.cpp).
 /// The pose of a collider's shape: rotation in the world, and its place relative to the body's centre of mass.
@@ -173,6 +190,8 @@ void solve(WorldState& state, float seconds);
 void finish(WorldState& state, float seconds);
 void publish_events(WorldState& state);
 void fall_asleep(WorldState& state, float seconds);
+/// Brings the trees of queries up to date, where anybody asks.
+void keep_query_boxes(WorldState& state);
 
 /// One whole step: world/step.cpp.
 void step(WorldState& state, float seconds);

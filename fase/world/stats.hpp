@@ -8,10 +8,10 @@
 namespace fase {
 
 /// The stages of a step, in their order.
-enum class Stage { Refresh, Pairs, Collide, Islands, Solve, Finish, Events, Sleep, Count };
+enum class Stage { Refresh, Pairs, Collide, Islands, Solve, Finish, Events, Sleep, Queries, Count };
 inline constexpr std::size_t stage_count = static_cast<std::size_t>(Stage::Count);
-inline constexpr std::array<std::string_view, stage_count> stage_names{"refresh", "pairs",  "collide", "islands",
-                                                                       "solve",   "finish", "events",  "sleep"};
+inline constexpr std::array<std::string_view, stage_count> stage_names{
+    "refresh", "pairs", "collide", "islands", "solve", "finish", "events", "sleep", "queries"};
 
 /// Times in milliseconds of wall clock; counts as of the end of the step.
 struct StepReport {

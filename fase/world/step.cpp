@@ -18,10 +18,12 @@ template <class F> void timed(WorldState& state, Stage stage, const F& work) {
 
 std::uint64_t bytes_held(const WorldState& s) {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
+    std::uint64_t trees = of(s.query.place) + of(s.query.noted);
+    for (const broad::WideBvh& tree : s.query.trees) trees += tree.bytes();
+    return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
            of(s.contacts) + of(s.active.pairs) + of(s.active.contacts) + of(s.resting.pairs) + of(s.resting.contacts) +
-           of(s.candidates) + of(s.askers) + s.static_boxes.bytes() + s.asleep_boxes.bytes() + s.awake_boxes.bytes() +
-           s.solver.bytes();
+           of(s.candidates) + of(s.askers) + of(s.previous_boxes) + s.static_boxes.bytes() + s.asleep_boxes.bytes() +
+           s.awake_boxes.bytes() + s.solver.bytes();
 }
 
 }  // namespace
@@ -43,6 +45,7 @@ void step(WorldState& state, float seconds) {
     }
     timed(state, Stage::Events, [&] { publish_events(state); });
     if (seconds > 0) timed(state, Stage::Sleep, [&] { fall_asleep(state, seconds); });
+    timed(state, Stage::Queries, [&] { keep_query_boxes(state); });
 
     ++state.steps;
     state.time += static_cast<double>(seconds);

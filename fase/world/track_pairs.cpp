@@ -54,11 +54,11 @@ void end_contact(WorldState& state, std::uint32_t index) {
 
 /// What rested on something that was removed, moved or changed must not stay asleep.
 void wake_around_edits(WorldState& state) {
-    for (const std::uint32_t contact : state.resting.contacts) {
-        const dynamics::Contact& c = state.contacts[contact];
-        const bool changed =
-            !is_current(state, c) || ((state.changes[c.collider_a] | state.changes[c.collider_b]) & edited);
-        if (!changed || c.sensor || c.count == 0) continue;
+    for (std::size_t i = 0; i < state.resting.size(); ++i) {
+        const Pair pair = state.resting.pairs[i];
+        if (!((state.changes[pair.a] | state.changes[pair.b]) & edited)) continue;
+        const dynamics::Contact& c = state.contacts[state.resting.contacts[i]];
+        if (c.sensor || c.count == 0) continue;
         for (const auto& [collider, generation, body] :
              {std::tuple{c.collider_a, c.generation_a, c.body_a}, std::tuple{c.collider_b, c.generation_b, c.body_b}})
             if (same_collider(state, collider, generation)) want_awake(state, body);
@@ -108,11 +108,22 @@ bool looks_crowded(WorldState& state, std::size_t limit) {
     return crowded;
 }
 
-/// Candidates of the askers in all three sets, sorted, each once. A crowd asks in portions and stops when the limit is
+/// Whether the boxes overlapped before this step already: then the pair is in a list, or not wanted. Says no of what
+/// the user touched.
+bool was_there(const WorldState& state, Pair pair) {
+    const auto before = [&](std::uint32_t c) -> const Aabb& {
+        return state.changes[c] & moved_box ? state.previous_boxes[c] : state.boxes[c];
+    };
+    return !((state.changes[pair.a] | state.changes[pair.b]) & edited) && overlaps(before(pair.a), before(pair.b));
+}
+
+/// Pairs of the askers in all three sets that are not in a list yet (and some that are: of what the user touched),
+/// sorted, each once. A crowd asks in portions and stops when the limit is
 /// reached: those with the largest numbers go without.
 void find_candidates(WorldState& state) {
     state.candidates.clear();
     const auto limit = static_cast<std::size_t>(state.settings.most_pairs);
+    const bool all_anew = state.ask_all;
     state.ask_all = false;
     const std::size_t portion = limit != 0 && looks_crowded(state, limit) ? 64 : state.askers.size();
     for (std::size_t begin = 0; begin < state.askers.size(); begin += portion) {
@@ -125,43 +136,73 @@ void find_candidates(WorldState& state) {
             std::span<const broad::Move>(state.askers).subspan(begin, std::min(portion, state.askers.size() - begin)));
     }
     state.report.candidates = state.candidates.size();
-    std::erase_if(state.candidates, [&](Pair pair) { return !wanted(state, pair); });
+    std::erase_if(state.candidates,
+                  [&](Pair pair) { return (!all_anew && was_there(state, pair)) || !wanted(state, pair); });
     state.sorter.sort(state.candidates);
     state.candidates.erase(std::unique(state.candidates.begin(), state.candidates.end()), state.candidates.end());
 }
 
-/// Merges new pairs into a list and ends those that no longer overlap or that somebody removed.
+/// Whether a pair of the list is over: its boxes came apart, somebody removed or changed a collider. Cheap for pairs to
+/// which nothing happened: two bytes are read.
+bool is_over(const WorldState& state, Pair pair, std::uint32_t contact) {
+    const auto change = static_cast<std::uint8_t>(state.changes[pair.a] | state.changes[pair.b]);
+    if (change == 0) return false;
+    if ((change & edited) && !is_current(state, state.contacts[contact])) return true;
+    return !overlaps(state.boxes[pair.a], state.boxes[pair.b]) || ((change & edited) && !wanted(state, pair));
+}
+
+/// Puts new pairs into a list and ends those that are over. What neither began nor ended is looked at through two bytes
+/// a pair, and moved in whole runs when anything did. A found pair that goes on is left as it is.
 void update_list(WorldState& state, PairList& list, std::span<const Pair> found) {
-    PairList next;
-    next.pairs.reserve(list.size() + found.size());
-    next.contacts.reserve(list.size() + found.size());
-    std::size_t i = 0, j = 0;
-    while (i < list.size() || j < found.size()) {
-        if (j == found.size() || (i < list.size() && list.pairs[i] <= found[j])) {
-            const Pair pair = list.pairs[i];
-            const std::uint32_t index = list.contacts[i++];
-            dynamics::Contact& c = state.contacts[index];
-            const bool current = is_current(state, c);
-            const std::uint8_t change = current ? state.changes[pair.a] | state.changes[pair.b] : 0;
-            if (!current || (change != 0 && !overlaps(state.boxes[pair.a], state.boxes[pair.b])) ||
-                ((change & edited) && !wanted(state, pair))) {
-                end_contact(state, index);
-                continue;  // a found pair with the same key is a new one
-            }
-            if (change & edited) c.frozen = false;
-            if (j < found.size() && found[j] == pair) ++j;
-            next.add(pair, index);
-        } else {
-            const std::uint32_t index = add_contact(state, found[j]);
-            next.add(found[j++], index);
+    std::vector<std::uint32_t>& over = state.scratch;
+    over.clear();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (is_over(state, list.pairs[i], list.contacts[i])) {
+            over.push_back(static_cast<std::uint32_t>(i));
+        } else if ((state.changes[list.pairs[i].a] | state.changes[list.pairs[i].b]) & edited) {
+            state.contacts[list.contacts[i]].frozen = false;
         }
     }
-    list = std::move(next);
+    if (over.empty() && found.empty()) return;
+
+    PairList& next = state.spare_list;
+    next.clear();
+    next.pairs.reserve(list.size() + found.size());
+    next.contacts.reserve(list.size() + found.size());
+    std::size_t taken = 0;  // of the list
+    const auto take_until = [&](std::size_t end) {
+        const auto run = [&](const auto& from, auto& into) {
+            into.insert(into.end(), from.begin() + static_cast<std::ptrdiff_t>(taken),
+                        from.begin() + static_cast<std::ptrdiff_t>(end));
+        };
+        run(list.pairs, next.pairs);
+        run(list.contacts, next.contacts);
+        taken = end;
+    };
+    std::size_t i = 0, j = 0;
+    while (i < over.size() || j < found.size()) {
+        if (j == found.size() || (i < over.size() && list.pairs[over[i]] <= found[j])) {
+            take_until(over[i]);
+            end_contact(state, list.contacts[over[i++]]);
+            ++taken;  // a found pair with the same key is a new one
+        } else {
+            const auto from = list.pairs.begin() + static_cast<std::ptrdiff_t>(taken);
+            take_until(
+                static_cast<std::size_t>(std::lower_bound(from, list.pairs.end(), found[j]) - list.pairs.begin()));
+            if (taken == list.size() || list.pairs[taken] != found[j]) next.add(found[j], add_contact(state, found[j]));
+            ++j;
+        }
+    }
+    take_until(list.size());
+    std::swap(list, next);
 }
 
 }  // namespace
 
 void track_pairs(WorldState& state) {
+    state.askers.clear();
+    for (const std::uint32_t c : state.moved) state.askers.push_back({c, state.boxes[c]});
+    state.awake_boxes.move(state.askers);
     for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) boxes->commit();
     const bool edits = state.removed_any || !state.edited_colliders.empty();
     if (edits) wake_around_edits(state);

@@ -6,7 +6,6 @@
 #include <limits>
 #include <thread>
 
-#include "fase/broad/registry.hpp"
 #include "fase/geometry/bounds.hpp"
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/cast_shape.hpp"
@@ -21,12 +20,6 @@ using namespace test;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-std::vector<std::string> structures() {
-    std::vector<std::string> names;
-    broad::for_each_structure([&]<broad::Structure S>() { names.emplace_back(S::info.name); });
-    return names;
-}
 
 Vec3 in_cube(Random& random, float reach) {
     return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
@@ -258,15 +251,8 @@ std::vector<BodyId> fill(World& world, int count, std::uint64_t seed) {
     return bodies;
 }
 
-class EveryStructure : public testing::TestWithParam<std::string> {
-protected:
-    [[nodiscard]] World make(const Settings& settings = {}) const {
-        return make_world(settings, {.structure = GetParam()});
-    }
-};
-
-TEST_P(EveryStructure, answers_as_a_loop_over_all_colliders_before_and_between_steps) {
-    World world = make();
+TEST(Query, answers_as_a_loop_over_all_colliders_before_and_between_steps) {
+    World world = make_world();
     fill(world, 60, 1);
     expect_right(world, 1);
     for (int i = 0; i < 25; ++i) {
@@ -275,12 +261,12 @@ TEST_P(EveryStructure, answers_as_a_loop_over_all_colliders_before_and_between_s
     }
 }
 
-TEST_P(EveryStructure, finds_bodies_that_left_their_boxes_in_the_last_step) {
+TEST(Query, finds_bodies_that_left_their_boxes_in_the_last_step) {
     Settings tight;
     tight.speculative_distance = 0;
     tight.box_margin = 0;
     tight.gravity = {0, -300, 0};
-    World world = make(tight);
+    World world = make_world(tight);
     fill(world, 100, 2);
     float overhang = 0;
     for (int i = 0; i < 12; ++i) {
@@ -291,14 +277,14 @@ TEST_P(EveryStructure, finds_bodies_that_left_their_boxes_in_the_last_step) {
     EXPECT_GT(overhang, 0) << "too few left their boxes to test that";
 }
 
-TEST_P(EveryStructure, finds_bodies_that_fell_asleep_in_full_motion) {
+TEST(Query, finds_bodies_that_fell_asleep_in_full_motion) {
     Settings sleepy;
     sleepy.speculative_distance = 0;
     sleepy.box_margin = 0;
     sleepy.sleep_linear_speed = sleepy.sleep_angular_speed = 1000;
     sleepy.sleep_distance = 1000;
     sleepy.time_to_sleep = 0.04f;
-    World world = make(sleepy);
+    World world = make_world(sleepy);
     fill(world, 60, 3);
     for (int i = 0; i < 8; ++i) {
         run(world, 1.0 / 60);
@@ -307,13 +293,13 @@ TEST_P(EveryStructure, finds_bodies_that_fell_asleep_in_full_motion) {
     EXPECT_FALSE(world.state().asleep.empty());
     EXPECT_GT(world.state().query.asleep_overhang, 0);
     // A world made from its bytes measures anew.
-    World copy = make();
+    World copy = make_world();
     ASSERT_TRUE(copy.restore(world.snapshot()));
     expect_right(copy, 300);
 }
 
-TEST_P(EveryStructure, answers_right_after_every_edit) {
-    World world = make();
+TEST(Query, answers_right_after_every_edit) {
+    World world = make_world();
     std::vector<BodyId> bodies = fill(world, 40, 4);
     run(world, 0.2);
     Random random(5);
@@ -362,10 +348,10 @@ TEST_P(EveryStructure, answers_right_after_every_edit) {
     }
 }
 
-TEST_P(EveryStructure, follows_the_fastest_bodies_through_edits) {
+TEST(Query, follows_the_fastest_bodies_through_edits) {
     Settings tight;
     tight.box_margin = 0;
-    World world = make(tight);
+    World world = make_world(tight);
     std::vector<BodyId> fast;
     for (int i = 0; i < 10; ++i)
         fast.push_back(add(world, {.position = {0.7 * i - 3.5, 0, 0}, .linear_velocity = {0, 0, 1}}, Sphere{0.3f}));
@@ -381,8 +367,8 @@ TEST_P(EveryStructure, follows_the_fastest_bodies_through_edits) {
     expect_right(world, 2);
 }
 
-TEST_P(EveryStructure, asked_or_not_goes_on_to_the_same_bits) {
-    World asked = make(), silent = make_world();
+TEST(Query, asked_or_not_goes_on_to_the_same_bits) {
+    World asked = make_world(), silent = make_world();
     for (World* world : {&asked, &silent}) add_pile(*world, 60);
     for (int i = 0; i < 90; ++i) {
         expect_right(asked, static_cast<std::uint64_t>(i), i % 10 == 0 ? 4 : 1);
@@ -394,8 +380,22 @@ TEST_P(EveryStructure, asked_or_not_goes_on_to_the_same_bits) {
     EXPECT_EQ(asked.hash(), silent.hash());
 }
 
-INSTANTIATE_TEST_SUITE_P(Query, EveryStructure, testing::ValuesIn(structures()),
-                         [](const auto& structure) { return structure.param; });
+TEST(Query, trees_stand_while_somebody_asks_and_come_back_later) {
+    World world = make_world();
+    fill(world, 60, 8);
+    run(world, 0.1);
+    EXPECT_FALSE(world.state().query.kept) << "nobody asked yet";
+    expect_right(world, 1);
+    run(world, 0.5);
+    EXPECT_TRUE(world.state().query.kept);
+    EXPECT_TRUE(world.state().query.ready) << "the step brings them up to date";
+    expect_right(world, 2);
+    run(world, 2);
+    EXPECT_FALSE(world.state().query.kept) << "nobody asked for two seconds";
+    expect_right(world, 3);
+    run(world, 1.0 / 60);
+    expect_right(world, 4);
+}
 
 TEST(Query, a_mass_given_far_away_leaves_boxes_around_their_shapes) {
     Settings tight;
@@ -410,21 +410,19 @@ TEST(Query, a_mass_given_far_away_leaves_boxes_around_their_shapes) {
 }
 
 TEST(Query, ties_go_to_the_smaller_index) {
-    for (const std::string& name : structures()) {
-        World world = make_world({}, {.structure = name});
-        std::vector<BodyId> bodies;
-        for (int i = 0; i < 20; ++i)
-            bodies.push_back(
-                add(world, {.kind = i % 2 == 0 ? BodyKind::Dynamic : BodyKind::Static, .position = {0, 1, 0}}, Box{}));
-        const auto hit = opened(cast_ray(world, {{0, 5, 0}, {0, -1, 0}}));
-        ASSERT_TRUE(hit);
-        EXPECT_EQ(hit->body, bodies[0]);
-        EXPECT_EQ(hit->at, 3.5f);
-        std::vector<NearHit> near;
-        opened(nearest(world, {0, 5, 0}, 3, inf, {}, near));
-        ASSERT_EQ(near.size(), 3u);
-        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(near[i].body, bodies[i]) << name;
-    }
+    World world = make_world();
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 20; ++i)
+        bodies.push_back(
+            add(world, {.kind = i % 2 == 0 ? BodyKind::Dynamic : BodyKind::Static, .position = {0, 1, 0}}, Box{}));
+    const auto hit = opened(cast_ray(world, {{0, 5, 0}, {0, -1, 0}}));
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, bodies[0]);
+    EXPECT_EQ(hit->at, 3.5f);
+    std::vector<NearHit> near;
+    opened(nearest(world, {0, 5, 0}, 3, inf, {}, near));
+    ASSERT_EQ(near.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(near[i].body, bodies[i]);
 }
 
 TEST(Query, hits_a_millimetre_apart_are_in_order_from_far_away) {
@@ -524,28 +522,26 @@ TEST(Query, batches_on_many_threads_equal_single_rays) {
 }
 
 TEST(Query, threads_may_ask_at_once_right_after_edits) {
-    for (const std::string& name : structures()) {
-        World world = make_world({}, {.structure = name});
-        const std::vector<BodyId> bodies = fill(world, 200, 7);
-        run(world, 0.1);
-        for (int round = 0; round < 5; ++round) {
-            ASSERT_TRUE(world.set_pose(bodies[static_cast<std::size_t>(3 + round)], {{0, 2, 0}, {}}));
-            std::atomic<int> wrong = 0;
-            std::vector<std::vector<Vec3d>> points(4);
-            std::vector<std::thread> threads;
-            for (std::size_t t = 0; t < 4; ++t)
-                threads.emplace_back([&, t] {
-                    Random random(11);
-                    for (int i = 0; i < 50; ++i) {
-                        const auto hit = cast_ray(world, random_ray(random));
-                        if (!hit) ++wrong;
-                        points[t].push_back(hit && *hit ? (*hit)->point : Vec3d{});
-                    }
-                });
-            for (std::thread& thread : threads) thread.join();
-            EXPECT_EQ(wrong, 0);
-            for (std::size_t t = 1; t < 4; ++t) EXPECT_EQ(points[t], points[0]) << name;
-        }
+    World world = make_world();
+    const std::vector<BodyId> bodies = fill(world, 200, 7);
+    run(world, 0.1);
+    for (int round = 0; round < 5; ++round) {
+        ASSERT_TRUE(world.set_pose(bodies[static_cast<std::size_t>(3 + round)], {{0, 2, 0}, {}}));
+        std::atomic<int> wrong = 0;
+        std::vector<std::vector<Vec3d>> points(4);
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < 4; ++t)
+            threads.emplace_back([&, t] {
+                Random random(11);
+                for (int i = 0; i < 50; ++i) {
+                    const auto hit = cast_ray(world, random_ray(random));
+                    if (!hit) ++wrong;
+                    points[t].push_back(hit && *hit ? (*hit)->point : Vec3d{});
+                }
+            });
+        for (std::thread& thread : threads) thread.join();
+        EXPECT_EQ(wrong, 0);
+        for (std::size_t t = 1; t < 4; ++t) EXPECT_EQ(points[t], points[0]);
     }
 }
 
