@@ -39,6 +39,6 @@ template <class F, class... S> void for_each_structure(F&& f, StructureList<S...
 template <class F> void for_each_structure(F&& f) { for_each_structure(f, AllStructures{}); }
 
 /// The structure that is used when the user names none, or "auto".
-inline constexpr std::string_view default_structure = DynamicBvh::info.name;
+inline constexpr std::string_view default_structure = RowGrid::info.name;
 
 }  // namespace fase::broad

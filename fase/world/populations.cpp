@@ -6,6 +6,7 @@
 
 namespace fase {
 
+using broad::Pair;
 using dynamics::no_index;
 using dynamics::Population;
 
@@ -63,27 +64,37 @@ bool is_awake(const WorldState& state, std::uint32_t contact) {
            state.bodies.traits[c.body_b].population == Population::Awake;
 }
 
-/// Takes the pairs for which `goes` holds out of `from` and merges them into `into`; both stay sorted.
-template <class F> void move_pairs(PairList& from, PairList& into, const F& goes) {
-    PairList stay, moved;
-    for (std::size_t i = 0; i < from.size(); ++i)
-        (goes(from.contacts[i]) ? moved : stay).add(from.pairs[i], from.contacts[i]);
-    if (moved.size() == 0) return;
-    PairList all;
-    all.pairs.reserve(into.size() + moved.size());
-    all.contacts.reserve(into.size() + moved.size());
-    std::size_t i = 0, j = 0;
-    while (i < into.size() || j < moved.size()) {
-        if (j == moved.size() || (i < into.size() && into.pairs[i] < moved.pairs[j])) {
-            all.add(into.pairs[i], into.contacts[i]);
-            ++i;
+/// Takes the pairs for which `goes(place)` holds out of `from` and merges them into `into`; both stay sorted. Two bytes
+/// a pair are read of what stays.
+template <class F> void move_pairs(PairList& from, PairList& into, PairList& moved, const F& goes) {
+    moved.clear();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (goes(i)) {
+            moved.add(from.pairs[i], from.contacts[i]);
         } else {
-            all.add(moved.pairs[j], moved.contacts[j]);
-            ++j;
+            if (kept != i) {
+                from.pairs[kept] = from.pairs[i];
+                from.contacts[kept] = from.contacts[i];
+            }
+            ++kept;
         }
     }
-    from = std::move(stay);
-    into = std::move(all);
+    if (moved.size() == 0) return;
+    from.pairs.resize(kept);
+    from.contacts.resize(kept);
+    // Merged from the back: what comes before the first that moved stays where it is.
+    std::size_t i = into.size(), j = moved.size(), at = i + j;
+    into.pairs.resize(at);
+    into.contacts.resize(at);
+    while (j > 0) {
+        const bool old = i > 0 && moved.pairs[j - 1] < into.pairs[i - 1];
+        const PairList& source = old ? into : moved;
+        const std::size_t place = old ? --i : --j;
+        --at;
+        into.pairs[at] = source.pairs[place];
+        into.contacts[at] = source.contacts[place];
+    }
 }
 
 void move_indices(std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& into,
@@ -97,9 +108,20 @@ void move_indices(std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& 
 
 }  // namespace
 
-void sort_out_pairs(WorldState& state) {
-    move_pairs(state.resting, state.active, [&](std::uint32_t contact) { return is_awake(state, contact); });
-    move_pairs(state.active, state.resting, [&](std::uint32_t contact) { return !is_awake(state, contact); });
+void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies) {
+    const auto for_each_collider = [&](const auto& f) {
+        for (const std::uint32_t body : bodies)
+            for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
+                f(state.changes[c]);
+    };
+    for_each_collider([](std::uint8_t& change) { change |= crossed; });
+    const auto touched = [&](Pair pair) { return ((state.changes[pair.a] | state.changes[pair.b]) & crossed) != 0; };
+    PairList &active = state.active, &resting = state.resting;
+    move_pairs(resting, active, state.spare_list,
+               [&](std::size_t i) { return touched(resting.pairs[i]) && is_awake(state, resting.contacts[i]); });
+    move_pairs(active, resting, state.spare_list,
+               [&](std::size_t i) { return touched(active.pairs[i]) && !is_awake(state, active.contacts[i]); });
+    for_each_collider([](std::uint8_t& change) { change = static_cast<std::uint8_t>(change & ~crossed); });
 }
 
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
@@ -110,7 +132,7 @@ void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
     }
     move_indices(state.asleep, state.awake, bodies);
     move_boxes(state, bodies, Population::Asleep, Population::Awake);
-    sort_out_pairs(state);
+    sort_out_pairs(state, bodies);
 }
 
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
@@ -123,7 +145,7 @@ void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
     move_indices(state.awake, state.asleep, bodies);
     move_boxes(state, bodies, Population::Awake, Population::Asleep);
     note_sleepers(state, bodies);
-    sort_out_pairs(state);
+    sort_out_pairs(state, bodies);
 }
 
 void want_awake(WorldState& state, std::uint32_t body) {

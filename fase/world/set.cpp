@@ -59,7 +59,7 @@ void renew_population(WorldState& state, std::uint32_t body) {
     }
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
-    sort_out_pairs(state);
+    sort_out_pairs(state, std::span(&body, 1));
     renew_boxes(state, body);
 }
 

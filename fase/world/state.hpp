@@ -73,7 +73,8 @@ struct IslandRest {
 /// What happened to a collider's box since the last step.
 enum ColliderChange : std::uint8_t {
     moved_box = 1,  ///< it left its grown box
-    edited = 2,     ///< the user made, moved or changed it
+    edited = 2,     ///< the user made, moved, changed or removed it
+    crossed = 4,    ///< its body is on the way between awake and asleep; set within sort_out_pairs() alone
 };
 
 /// The trees that queries between steps go through, and what they know of the boxes beyond the boxes
@@ -111,7 +112,7 @@ struct WorldState {
     IdPool<ColliderTag> collider_ids;
     std::vector<Collider> colliders;
     std::vector<Aabb> boxes;            ///< grown, by collider
-    std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider; those of removed ones are `edited`
+    std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider
     std::vector<SharedShape> shapes;
     std::vector<std::uint32_t> free_shapes;
     pairs::PairExclusions exclusions;
@@ -169,8 +170,9 @@ void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies);
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies);
 /// Notes how far the colliders of these bodies, which have just come to the asleep set, stick out of their boxes there.
 void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodies);
-/// Pairs go to the list where they belong: active when a body of theirs is awake.
-void sort_out_pairs(WorldState& state);
+/// The pairs of these bodies, whose population is another now, go to the list where they belong: active when a body of
+/// theirs is awake. Costs a glance at each pair.
+void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies);
 /// Asks that the body's island be awake before pairs are sought in the next step.
 void want_awake(WorldState& state, std::uint32_t body);
 /// Wakes the islands of all wanted bodies.

@@ -177,7 +177,9 @@ TEST(Edit, a_thousand_bodies_come_and_go_and_leave_nothing) {
             bodies.erase(bodies.begin() + static_cast<long>(at));
         }
         ASSERT_TRUE(world.step());
-        ASSERT_EQ(world.state().awake_boxes.broken_invariant(), "");
+        broad::AnyStructure awake = world.state().awake_boxes;  // may wait for what fell asleep to be taken out
+        awake.commit();
+        ASSERT_EQ(awake.broken_invariant(), "");
     }
     for (const BodyId body : bodies) ASSERT_TRUE(world.remove_body(body));
     ASSERT_TRUE(world.step());
