@@ -107,6 +107,10 @@ template <class F> void PairFinder::drop_resting(const F& goes) {
 
 void PairFinder::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     out.insert(out.end(), resting_.begin(), resting_.end());
+    find_awake_pairs(tasks, out);
+}
+
+void PairFinder::find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     awake_.find_pairs(tasks, out);
     append_pairs_between(tasks, awake_, awake_row_, asleep_, asleep_row_, out);
     append_pairs_between(tasks, awake_, awake_row_, static_, static_row_, out);

@@ -29,6 +29,8 @@ public:
     void update(std::span<const Aabb> boxes);
     /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+    /// The same without those of two that rest.
+    void find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
 
     [[nodiscard]] Population population(Proxy p) const { return populations_[p]; }
     /// How many boxes are awake now.

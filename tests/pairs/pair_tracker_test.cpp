@@ -1,0 +1,160 @@
+#include "fase/pairs/pair_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fase/core/random.hpp"
+
+namespace fase::pairs {
+namespace {
+
+using broad::AnyStructure;
+using broad::Pair;
+using broad::Population;
+using Pairs = std::vector<Pair>;
+
+Pairs sorted(std::span<const Pair> pairs) {
+    Pairs out(pairs.begin(), pairs.end());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+/// Every pair that overlaps, but those of two static boxes, by trying all.
+Pairs tried(std::span<const Aabb> boxes, std::span<const Population> populations) {
+    Pairs out;
+    for (broad::Proxy p = 0; p < boxes.size(); ++p)
+        for (broad::Proxy q = p + 1; q < boxes.size(); ++q)
+            if (overlaps(boxes[p], boxes[q]) &&
+                (populations[p] != Population::Static || populations[q] != Population::Static))
+                out.push_back({p, q});
+    return out;
+}
+
+Aabb box_at(Random& random, float size) {
+    const Vec3 lo{random.between(-4, 4), random.between(-4, 4), random.between(-4, 4)};
+    return {lo, lo + Vec3{random.between(0, size), random.between(0, size), random.between(0, size)}};
+}
+
+/// Any box, and now and then one that is endless, no box at all, or inside out.
+Aabb odd_box(Random& random) {
+    constexpr float inf = Aabb::infinity, nan = std::numeric_limits<float>::quiet_NaN();
+    switch (random.below(12)) {
+        case 0: return Aabb::everything();
+        case 1: return {{-inf, -1, -inf}, {inf, 0, inf}};
+        case 2: return {{nan, 0, 0}, {1, 1, 1}};
+        case 3: return {{0, 0, 0}, {1, nan, 1}};
+        case 4: return {{1, 1, 1}, {0, 0, 0}};
+        case 5: return {{inf, inf, inf}, {inf, inf, inf}};
+        default: return box_at(random, 2);
+    }
+}
+
+struct Life {
+    bool odd = false;
+    int threads = 1;
+    std::string structure = "row_grid";
+    std::size_t boxes = 60;
+    int frames = 40;
+};
+
+/// Plays a random life to a tracker and to a PairSet.
+void expect_told_right(const Life& life, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Aabb> boxes;
+    std::vector<Population> populations;
+    for (std::size_t i = 0; i < life.boxes; ++i) {
+        boxes.push_back(life.odd ? odd_box(random) : box_at(random, 2));
+        populations.push_back(static_cast<Population>(random.below(3)));
+    }
+    const auto tasks = make_thread_runner(life.threads);
+    PairTracker tracker(*AnyStructure::named(life.structure));
+    PairSet judge;
+    Pairs all = sorted(tracker.build(*tasks, boxes, populations).begun);
+    ASSERT_EQ(all, tried(boxes, populations));
+    judge.update(all);
+    for (int frame = 0; frame < life.frames; ++frame) {
+        const bool static_moves = frame % 5 == 4;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const bool moves = populations[i] == Population::Awake    ? random.below(4) != 0
+                               : populations[i] == Population::Asleep ? random.below(50) == 0
+                                                                      : static_moves && random.below(20) == 0;
+            if (!moves) continue;
+            if (life.odd && random.below(3) == 0) {
+                boxes[i] = odd_box(random);
+            } else if (random.below(6) == 0) {
+                boxes[i] = box_at(random, 2);
+            } else {
+                const Vec3 way{random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f)};
+                boxes[i].lo += way;
+                boxes[i].hi += way;
+            }
+        }
+        const PairChanges told = tracker.update(*tasks, boxes);
+        const Pairs now = tried(boxes, populations);
+        const PairChanges right = judge.update(now);
+        ASSERT_EQ(sorted(told.begun), sorted(right.begun)) << "frame " << frame;
+        ASSERT_EQ(sorted(told.ended), sorted(right.ended)) << "frame " << frame;
+        // Those of two that rest may be left out.
+        const Pairs staying = sorted(told.staying);
+        ASSERT_TRUE(std::includes(right.staying.begin(), right.staying.end(), staying.begin(), staying.end()));
+        for (const Pair pair : right.staying)
+            if (tracker.finder().population(pair.a) == Population::Awake ||
+                tracker.finder().population(pair.b) == Population::Awake) {
+                ASSERT_TRUE(std::binary_search(staying.begin(), staying.end(), pair)) << "frame " << frame;
+            }
+    }
+}
+
+TEST(PairTracker, TellsWhatAPairSetTellsOfAllPairs) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_told_right({}, seed);
+}
+
+TEST(PairTracker, TellsOfEndlessMissingAndInvertedBoxes) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_told_right({.odd = true}, seed);
+}
+
+TEST(PairTracker, TellsTheSameOnEveryStructureAndOnThreads) {
+    broad::for_each_structure([]<broad::Structure S>() {
+        expect_told_right({.odd = true, .threads = 2, .structure = std::string(S::info.name)}, 7);
+    });
+}
+
+TEST(PairTracker, SharesManyPairsAmongThreads) {
+    // 300 boxes in one place have 44,850 pairs: several portions.
+    std::vector<Aabb> boxes(300, Aabb{{0, 0, 0}, {1, 1, 1}});
+    const std::vector<Population> populations(boxes.size(), Population::Awake);
+    Pairs before;
+    for (const int threads : {2, 3, 4}) {
+        const auto tasks = make_thread_runner(threads);
+        PairTracker tracker;
+        tracker.build(*tasks, boxes, populations);
+        std::vector<Aabb> next = boxes;
+        for (std::size_t i = 0; i < next.size(); i += 3) next[i].lo += Vec3{5, 0, 0}, next[i].hi += Vec3{5, 0, 0};
+        const PairChanges told = tracker.update(*tasks, next);
+        EXPECT_EQ(told.staying.size(), 200u * 199 / 2 + 100u * 99 / 2);
+        EXPECT_EQ(told.ended.size(), 200u * 100);
+        EXPECT_TRUE(told.begun.empty());
+        const Pairs staying(told.staying.begin(), told.staying.end());
+        if (!before.empty()) {
+            EXPECT_EQ(staying, before) << "in another order on " << threads << " threads";
+        }
+        before = staying;
+    }
+}
+
+TEST(PairTracker, SaysNothingOfAWorldAtRest) {
+    std::vector<Aabb> boxes(50, Aabb{{0, 0, 0}, {1, 1, 1}});
+    const std::vector<Population> populations(boxes.size(), Population::Asleep);
+    const auto tasks = make_serial_runner();
+    PairTracker tracker;
+    EXPECT_EQ(tracker.build(*tasks, boxes, populations).begun.size(), 50u * 49 / 2);
+    for (int i = 0; i < 3; ++i) {
+        const PairChanges told = tracker.update(*tasks, boxes);
+        EXPECT_TRUE(told.begun.empty() && told.ended.empty() && told.staying.empty());
+    }
+}
+
+}  // namespace
+}  // namespace fase::pairs
