@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 
 #include "fase/pairs/tracker_passes.hpp"
 
@@ -99,30 +100,35 @@ HWY_INLINE unsigned overlap_bits(const LastPlaces& a, const LastPlaces& b) {
 }
 #endif
 
-/// No branch depends on boxes, and it is known early which ones come.
+/// By portions, in two passes: the first has no branch that depends on boxes and knows early which ones come; the
+/// second looks again at the few that do not stay.
 std::size_t tell(const LastPlaces* places, std::span<broad::Pair> pairs, std::vector<broad::Pair>& begun,
                  std::vector<broad::Pair>& ended) {
     constexpr std::size_t portion = 1024, ahead = 24;
-    broad::Pair now_only[portion], before_only[portion];
+    std::array<broad::Pair, portion + 1> others;
     broad::Pair* out = pairs.data();
     for (std::size_t begin = 0; begin < pairs.size(); begin += portion) {
         const std::size_t end = std::min(begin + portion, pairs.size());
-        std::size_t begins = 0, ends = 0;
+        std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const broad::Pair later = pairs[std::min(i + ahead, pairs.size() - 1)];
             hwy::Prefetch(&places[later.a]);
             hwy::Prefetch(&places[later.b]);
             const broad::Pair pair = pairs[i];
-            const unsigned bits = overlap_bits(places[pair.a], places[pair.b]);
-            const bool was = (bits & 15) == 15, is = bits >> 4 == 15;
+            const std::size_t stays = overlap_bits(places[pair.a], places[pair.b]) == 0xff ? 1 : 0;
             *out = pair;  // never ahead of i
-            now_only[begins] = before_only[ends] = pair;
-            out += was && is ? 1 : 0;
-            begins += is && !was ? 1 : 0;
-            ends += was && !is ? 1 : 0;
+            out += stays;
+            others[count] = pair;
+            count += 1 - stays;
         }
-        begun.insert(begun.end(), now_only, now_only + begins);
-        ended.insert(ended.end(), before_only, before_only + ends);
+        for (std::size_t i = 0; i < count; ++i) {
+            const unsigned bits = overlap_bits(places[others[i].a], places[others[i].b]);
+            if (bits >> 4 == 15) {
+                begun.push_back(others[i]);
+            } else if ((bits & 15) == 15) {
+                ended.push_back(others[i]);
+            }
+        }
     }
     return static_cast<std::size_t>(out - pairs.data());
 }
