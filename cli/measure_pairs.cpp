@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "fase/broad/plain_sweep.hpp"
@@ -76,6 +77,23 @@ double brute_force_seconds(std::span<const Aabb> boxes, const TraceSurvey& surve
     return a_test * (build + frame * static_cast<double>(survey.frames + 1));
 }
 
+/// Which structures an automatic choice ended with: that of most boxes is named first.
+void tell_choice(const broad::PairFinder& finder, std::span<const Population> populations, PairFigures& figures) {
+    std::array<std::size_t, 3> counts{};
+    for (Proxy p = 0; p < populations.size(); ++p) ++counts[static_cast<std::size_t>(finder.population(p))];
+    constexpr std::array<std::string_view, 3> names{"awake", "asleep", "static"};
+    static_assert(static_cast<int>(Population::Awake) == 0 && static_cast<int>(Population::Static) == 2);
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] == 0) continue;
+        const broad::SuitedStructure chosen = finder.chosen(static_cast<Population>(i));
+        figures.reason += fmt::format("{}{} {}: {} ({})", figures.reason.empty() ? "" : "; ", counts[i], names[i],
+                                      chosen.structure, chosen.reason);
+        if (counts[i] >= most) figures.chosen = chosen.structure;
+        most = std::max(most, counts[i]);
+    }
+}
+
 }  // namespace
 
 std::vector<Population> populations_of(const record::TraceReader& trace) {
@@ -135,7 +153,8 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     }
 
     const auto start = Clock::now();
-    broad::PairFinder finder(choice.empty);
+    const bool automatic = choice.asked == "auto";
+    broad::PairFinder finder = automatic ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty);
     const std::vector<Population> populations = populations_of(trace);
     const auto begin_of_build = Clock::now();
     finder.build(tasks, boxes, populations);
@@ -174,6 +193,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     if (!times.empty()) figures.least_ms = *std::min_element(times.begin(), times.end());
     figures.hash = hash.value();
     figures.stats = finder.stats();
+    if (automatic) tell_choice(finder, populations, figures);
     if (!survey.judged.empty()) figures.right = right;
     return figures;
 }

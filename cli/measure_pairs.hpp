@@ -21,6 +21,7 @@ using Tell = std::function<bool(std::uint64_t done, std::uint64_t total, std::st
 /// What one structure made of a trace. Nothing is measured when `skipped` says why.
 struct PairFigures {
     std::string structure, chosen;
+    std::string reason;  ///< of an automatic choice: which population stands in what, and why
     std::string skipped;
     int threads = 1;
     std::uint64_t frames = 0;

@@ -35,7 +35,8 @@ std::string json_of(const PairFigures& row) {
                                 "depth", "nodes", "boxes_per_leaf", "checked"})
             text += fmt::format("\"{}\": null, ", key);
     }
-    return text + fmt::format("\"chosen\": {}, \"skipped\": {}}}", scene::quoted(row.chosen),
+    return text + fmt::format("\"chosen\": {}, \"reason\": {}, \"skipped\": {}}}", scene::quoted(row.chosen),
+                              row.reason.empty() ? "null" : scene::quoted(row.reason),
                               row.skipped.empty() ? "null" : scene::quoted(row.skipped));
 }
 
@@ -61,7 +62,10 @@ std::string to_table(const std::vector<PairFigures>& rows) {
                    fmt::format("{:.1f}", row.stats.occupancy()), fmt::format("{:016x}", row.hash),
                    row.right ? (*row.right ? "ok" : "WRONG") : "-"});
     }
-    return table.text();
+    std::string text = table.text();
+    for (const PairFigures& row : rows)
+        if (!row.reason.empty()) text += fmt::format("{}: {}\n", row.structure, row.reason);
+    return text;
 }
 
 std::string head_of(const record::TraceReader& trace, const TraceSurvey& seen, int threads) {

@@ -82,6 +82,24 @@ void AnyStructure::build(std::span<const Move> boxes) {
         structure_);
 }
 
+void AnyStructure::become(AnyStructure other) {
+    commit();
+    std::vector<Move> all;
+    all.reserve(size());
+    std::vector<Proxy> resting;
+    traverse(Everything{}, [&](Proxy p, const Aabb& box) {
+        all.push_back({p, box});
+        if (!is_awake(p)) resting.push_back(p);
+        return true;
+    });
+    other.build(all);
+    if (!resting.empty()) {
+        other.set_awake(resting, false);
+        other.commit();
+    }
+    structure_ = std::move(other.structure_);
+}
+
 void AnyStructure::commit() {
     std::visit([](auto& s) { s.commit(); }, structure_);
 }

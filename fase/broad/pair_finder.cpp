@@ -46,9 +46,16 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
                                                                         : awake_row_;
         row.push_back({static_cast<Proxy>(i), boxes[i]});
     }
-    awake_.build(awake_row_);
-    asleep_.build(asleep_row_);
-    static_.build(static_row_);
+    for (const auto& [structure, row] :
+         {std::pair{&awake_, &awake_row_}, std::pair{&asleep_, &asleep_row_}, std::pair{&static_, &static_row_}}) {
+        if (automatic_) {
+            structure->clear();
+            structure->become(*AnyStructure::named(suited_structure({row->size(), 1}, {}).structure));
+        }
+        structure->build(*row);
+    }
+    if (automatic_) suit_all(true);
+    updates_ = 0;
     resting_.clear();
     asleep_.find_pairs(tasks, resting_);
     append_pairs_between(tasks, asleep_, asleep_row_, static_, static_row_, resting_);
@@ -59,8 +66,23 @@ void PairFinder::update(std::span<const Aabb> boxes) {
     take_changed(awake_row_, boxes, changed_);
     awake_.move(changed_);
     wake_changed(boxes);
+    constexpr std::uint32_t looks_again = 32;
+    if (automatic_) suit_all(++updates_ % looks_again == 0);
     awake_.commit();
     move_static(boxes);
+}
+
+void PairFinder::suit_all(bool looks_closely) {
+    for (AnyStructure* structure : {&awake_, &asleep_, &static_}) suit(*structure, looks_closely);
+}
+
+SuitedStructure PairFinder::chosen(Population population) const {
+    const AnyStructure& structure = population == Population::Static   ? static_
+                                    : population == Population::Asleep ? asleep_
+                                                                       : awake_;
+    const std::string_view name = structure.info().name;
+    if (!automatic_) return {name, {}};
+    return {name, suited_structure({structure.size(), 1}, name).reason};
 }
 
 void PairFinder::wake_changed(std::span<const Aabb> boxes) {

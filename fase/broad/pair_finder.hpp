@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "fase/broad/any_structure.hpp"
+#include "fase/broad/suited_structure.hpp"
 
 namespace fase::broad {
 
@@ -22,6 +22,12 @@ class PairFinder {
 public:
     /// @param kind an empty structure: the three populations stand in copies of it
     explicit PairFinder(const AnyStructure& kind = {}) : awake_(kind), asleep_(kind), static_(kind) {}
+    /// One that puts each population into the structure that suits it, and looks again now and then.
+    [[nodiscard]] static PairFinder automatic() {
+        PairFinder finder;
+        finder.automatic_ = true;
+        return finder;
+    }
 
     /// Replaces all boxes, and finds the pairs of those that rest. `populations` is as long as `boxes`.
     void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
@@ -32,6 +38,8 @@ public:
     /// The same without those of two that rest.
     void find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
 
+    /// The structure that a population stands in, and why; the reason is empty where somebody named it.
+    [[nodiscard]] SuitedStructure chosen(Population population) const;
     [[nodiscard]] Population population(Proxy p) const { return populations_[p]; }
     /// How many boxes are awake now.
     [[nodiscard]] std::size_t awake() const { return awake_.size(); }
@@ -47,9 +55,12 @@ private:
     std::vector<Move> awake_row_, asleep_row_, static_row_;  // what stands in them
     std::vector<Population> populations_;                    // by place
     std::vector<Pair> resting_;
+    bool automatic_ = false;
+    std::uint32_t updates_ = 0;
     std::vector<Move> changed_;           // of one update
     std::vector<Proxy> changed_proxies_;  // of the same
 
+    void suit_all(bool looks_closely);
     void wake_changed(std::span<const Aabb> boxes);
     void move_static(std::span<const Aabb> boxes);
     /// Drops the resting pairs for which `goes(proxy)` holds for either.

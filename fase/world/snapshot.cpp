@@ -305,6 +305,7 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         next->own_tasks = std::move(state_->own_tasks);
         next->tasks = state_->tasks;
         next->solver.reference = state_->solver.reference;
+        next->suits_structures = state_->suits_structures;
         next->static_boxes = std::move(state_->static_boxes);
         next->asleep_boxes = std::move(state_->asleep_boxes);
         next->awake_boxes = std::move(state_->awake_boxes);

@@ -136,7 +136,8 @@ struct WorldState {
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
     broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
-    mutable QueryBoxes query;  // mutable: the first query after a change brings it up to date
+    bool suits_structures = false;  ///< each set stands in the structure that suits it
+    mutable QueryBoxes query;       // mutable: the first query after a change brings it up to date
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;

@@ -34,7 +34,8 @@ struct StepReport {
     std::uint32_t speed_clamped = 0;  ///< bodies held at a cap
     std::uint32_t pairs_dropped = 0;  ///< beyond Settings::most_pairs
     std::uint32_t quarantined = 0;    ///< bodies taken out of play in this step
-    std::string_view structure;       ///< the broad phase that was used
+    std::string_view structure;       ///< the broad phase in which awake boxes stand
+    std::string_view reason;          ///< why it was chosen; empty when the user named it
 };
 
 }  // namespace fase

@@ -1,6 +1,7 @@
 /// One step, on one screen.
 #include <chrono>
 
+#include "fase/broad/suited_structure.hpp"
 #include "fase/core/float_mode.hpp"
 #include "fase/world/state.hpp"
 
@@ -55,6 +56,8 @@ void step(WorldState& state, float seconds) {
     state.report.asleep = static_cast<std::uint32_t>(state.asleep.size());
     state.report.pairs = static_cast<std::uint32_t>(state.active.size());
     state.report.structure = state.awake_boxes.info().name;
+    if (state.suits_structures)
+        state.report.reason = broad::suited_structure({state.awake_boxes.size(), 1}, state.report.structure).reason;
     state.report.bytes = bytes_held(state);
 }
 

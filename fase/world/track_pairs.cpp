@@ -1,6 +1,7 @@
 /// Stage "pairs": which grown boxes overlap, and what began and ended with it.
 #include <algorithm>
 
+#include "fase/broad/suited_structure.hpp"
 #include "fase/world/state.hpp"
 
 namespace fase {
@@ -200,10 +201,17 @@ void update_list(WorldState& state, PairList& list, std::span<const Pair> found)
 }  // namespace
 
 void track_pairs(WorldState& state) {
+    const auto commit = [&] {
+        constexpr std::uint64_t looks_again = 32;  // steps
+        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) {
+            if (state.suits_structures) broad::suit(*boxes, state.steps % looks_again == 0);
+            boxes->commit();
+        }
+    };
     state.askers.clear();
     for (const std::uint32_t c : state.moved) state.askers.push_back({c, state.boxes[c]});
     state.awake_boxes.move(state.askers);
-    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) boxes->commit();
+    commit();
     const bool edits = state.removed_any || !state.edited_colliders.empty();
     if (edits) wake_around_edits(state);
     gather_askers(state);
@@ -218,7 +226,6 @@ void track_pairs(WorldState& state) {
                 if (acts) want_awake(state, state.colliders[other].body);
             }
         wake_wanted_islands(state);
-        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes}) boxes->commit();
         const auto awake_pair = [&](Pair pair) {
             return state.bodies.traits[state.colliders[pair.a].body].population == Population::Awake ||
                    state.bodies.traits[state.colliders[pair.b].body].population == Population::Awake;

@@ -39,6 +39,7 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
         state->body_ids = IdPool<BodyTag>(number);
         state->collider_ids = IdPool<ColliderTag>(number);
         state->settings = settings;
+        state->suits_structures = setup.structure == "auto";
         state->static_boxes = state->asleep_boxes = state->awake_boxes = *structure;
         if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
         state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();

@@ -1,0 +1,122 @@
+#include "fase/broad/suited_structure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fase/broad/pair_finder.hpp"
+#include "tests/conformance/scenes.hpp"
+
+namespace fase::broad {
+namespace {
+
+std::vector<Move> row_of(std::size_t count, float every_tenth = 1) {
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < count; ++p) {
+        const auto x = static_cast<float>(p) * 0.9f;
+        const float size = p % 10 == 0 ? every_tenth : 1;
+        boxes.push_back({p, {{x, 0, 0}, {x + size, size, size}}});
+    }
+    return boxes;
+}
+
+AnyStructure filled(std::string_view name, std::span<const Move> boxes) {
+    AnyStructure structure = *AnyStructure::named(name);
+    structure.build(boxes);
+    return structure;
+}
+
+TEST(SuitedStructure, TriesAllOfFewAndSortsMany) {
+    EXPECT_EQ(suited_structure({10, 1}, {}).structure, "brute_force");
+    EXPECT_EQ(suited_structure({10000, 1}, {}).structure, "row_grid");
+    EXPECT_NE(suited_structure({10, 1}, {}).reason, suited_structure({10000, 1}, {}).reason);
+    for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to trying all as the number grows
+        bool sorts = false;
+        for (std::size_t n = 0; n < 1000; ++n) {
+            const bool now = suited_structure({n, spread}, {}).structure == "row_grid";
+            EXPECT_TRUE(now || !sorts) << n;
+            sorts = now;
+        }
+    }
+}
+
+TEST(SuitedStructure, DoesNotFlicker) {
+    // A count that goes up and down by a tenth changes the structure at most once.
+    for (std::size_t middle = 20; middle < 1000; middle += 5) {
+        std::string_view current = suited_structure({middle, 1}, {}).structure;
+        int changes = 0;
+        for (int i = 0; i < 10; ++i) {
+            const std::size_t n = i % 2 == 0 ? middle * 10 / 11 : middle * 11 / 10;
+            const std::string_view next = suited_structure({n, 1}, current).structure;
+            changes += next != current ? 1 : 0;
+            current = next;
+        }
+        EXPECT_LE(changes, middle < 90 || middle > 360 ? 0 : 1) << middle;
+    }
+}
+
+TEST(SuitedStructure, LooksAtSizesWhereItMatters) {
+    AnyStructure alike = filled("brute_force", row_of(200)), unlike = filled("brute_force", row_of(200, 9));
+    suit(alike, false);
+    EXPECT_EQ(alike.info().name, "brute_force") << "not looked at closely";
+    suit(alike, true);
+    suit(unlike, true);
+    EXPECT_EQ(alike.info().name, "row_grid");
+    EXPECT_EQ(unlike.info().name, "brute_force");
+}
+
+TEST(SuitedStructure, EveryStructureBecomesEveryOther) {
+    for_each_structure([]<Structure From>() {
+        for_each_structure([]<Structure To>() {
+            std::vector<Move> boxes = row_of(40);
+            constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+            boxes.push_back({50, Aabb::everything()});
+            boxes.push_back({61, {{nan, 0, 0}, {1, 1, 1}}});
+            AnyStructure structure = filled(From::info.name, boxes);
+            const std::vector<Proxy> resting{3, 4, 5, 50};
+            structure.set_awake(resting, false);
+            const std::vector<Proxy> gone{7};
+            structure.erase(gone);  // not committed yet
+            structure.become(*AnyStructure::named(To::info.name));
+            EXPECT_EQ(structure.info().name, To::info.name);
+            EXPECT_EQ(structure.size(), boxes.size() - 1);
+            EXPECT_EQ(structure.broken_invariant(), "");
+            for (const Proxy p : resting) EXPECT_FALSE(structure.is_awake(p));
+            EXPECT_TRUE(structure.is_awake(6));
+            std::vector<Pair> pairs;
+            structure.find_awake_pairs(pairs);
+            std::sort(pairs.begin(), pairs.end());
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{3, 4}), 0);
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{5, 6}), 1);
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{8, 50}), 1);
+        });
+    });
+}
+
+TEST(SuitedStructure, AnExplosionOfFewMakesManyAtOnce) {
+    // Nearly all are asleep, then all wake in one frame: the few awake ones were tried one by one.
+    std::vector<Aabb> boxes;
+    for (const Move& m : row_of(5000)) boxes.push_back(m.box);
+    std::vector<Population> populations(boxes.size(), Population::Asleep);
+    populations[0] = Population::Awake;
+    const auto tasks = make_serial_runner();
+    PairFinder finder = PairFinder::automatic();
+    finder.build(*tasks, boxes, populations);
+    EXPECT_EQ(finder.chosen(Population::Awake).structure, "brute_force");
+    EXPECT_EQ(finder.chosen(Population::Asleep).structure, "row_grid");
+    EXPECT_FALSE(finder.chosen(Population::Awake).reason.empty());
+    for (Aabb& box : boxes) box.hi.y += 1;
+    finder.update(boxes);
+    EXPECT_EQ(finder.awake(), boxes.size());
+    EXPECT_EQ(finder.chosen(Population::Awake).structure, "row_grid");
+    EXPECT_EQ(finder.chosen(Population::Asleep).structure, "brute_force");
+    std::vector<Pair> pairs;
+    finder.find_pairs(*tasks, pairs);
+    EXPECT_EQ(pairs.size(), boxes.size() - 1);
+    EXPECT_EQ(finder.broken_invariant(), "");
+    EXPECT_TRUE(PairFinder().chosen(Population::Awake).reason.empty()) << "named by the user";
+}
+
+}  // namespace
+}  // namespace fase::broad
