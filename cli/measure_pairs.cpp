@@ -9,6 +9,7 @@
 
 #include "fase/broad/plain_sweep.hpp"
 #include "fase/core/random.hpp"
+#include "fase/pairs/pair_tracker.hpp"
 
 namespace fase::cli {
 namespace {
@@ -77,6 +78,57 @@ double brute_force_seconds(std::span<const Aabb> boxes, const TraceSurvey& surve
     return a_test * (build + frame * static_cast<double>(survey.frames + 1));
 }
 
+/// What is measured of a structure, frame by frame.
+class Player {
+public:
+    Player(const StructureChoice& choice, bool changes, TaskRunner& tasks)
+        : tasks_(tasks),
+          changes_(changes),
+          tracker_(choice.asked == "auto" ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty)) {
+        if (!changes) finder_ = tracker_.finder();
+    }
+    void build(std::span<const Aabb> boxes, std::span<const Population> populations) {
+        if (changes_) {
+            print_ = broad::print_of(tracker_.build(tasks_, boxes, populations).begun);
+        } else {
+            finder_.build(tasks_, boxes, populations);
+            find();  // so that memory is at hand
+        }
+    }
+    /// Takes the next frame's boxes, and tells of its pairs.
+    void update(std::span<const Aabb> boxes) {
+        if (changes_) {
+            told_ = tracker_.update(tasks_, boxes);
+        } else {
+            finder_.update(boxes);
+        }
+    }
+    void find() {
+        if (changes_) return;
+        pairs_.clear();
+        finder_.find_pairs(tasks_, pairs_);
+    }
+    /// Of the pairs of this frame; to be asked for once after each update().
+    broad::PairSetPrint print() {
+        if (!changes_) return broad::print_of(pairs_);
+        print_ += broad::print_of(told_.begun);
+        print_ -= broad::print_of(told_.ended);
+        return print_;
+    }
+    [[nodiscard]] std::uint64_t begun() const { return told_.begun.size(); }
+    [[nodiscard]] std::uint64_t ended() const { return told_.ended.size(); }
+    [[nodiscard]] const broad::PairFinder& finder() const { return changes_ ? tracker_.finder() : finder_; }
+
+private:
+    TaskRunner& tasks_;
+    bool changes_;
+    pairs::PairTracker tracker_;
+    broad::PairFinder finder_;
+    std::vector<Pair> pairs_;
+    pairs::PairChanges told_;
+    broad::PairSetPrint print_;
+};
+
 /// Which structures an automatic choice ended with: that of most boxes is named first.
 void tell_choice(const broad::PairFinder& finder, std::span<const Population> populations, PairFigures& figures) {
     std::array<std::size_t, 3> counts{};
@@ -137,7 +189,8 @@ Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, boo
 }
 
 Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
-                                  TaskRunner& tasks, std::optional<double> most_seconds, const Tell& tell) {
+                                  TaskRunner& tasks, bool changes, std::optional<double> most_seconds,
+                                  const Tell& tell) {
     PairFigures figures;
     figures.structure = choice.asked;
     figures.chosen = choice.chosen;
@@ -154,14 +207,12 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
 
     const auto start = Clock::now();
     const bool automatic = choice.asked == "auto";
-    broad::PairFinder finder = automatic ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty);
+    Player player(choice, changes, tasks);
     const std::vector<Population> populations = populations_of(trace);
     const auto begin_of_build = Clock::now();
-    finder.build(tasks, boxes, populations);
+    player.build(boxes, populations);
     figures.build_ms = ms_since(begin_of_build);
 
-    std::vector<Pair> pairs;
-    finder.find_pairs(tasks, pairs);  // so that memory is at hand
     std::vector<double> times;
     Hasher hash;
     bool right = true;
@@ -175,25 +226,26 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
         if (frame > 0) {
             if (const Result<bool> read = trace.next(boxes); !read) return read.error();
         }
-        pairs.clear();
         const auto begin = Clock::now();
-        if (frame > 0) finder.update(boxes);
-        finder.find_pairs(tasks, pairs);
-        times.push_back(ms_since(begin));
+        if (frame > 0) player.update(boxes);
+        player.find();
+        if (frame > 0 || !changes) times.push_back(ms_since(begin));
 
-        const broad::PairSetPrint print = broad::print_of(pairs);
+        const broad::PairSetPrint print = player.print();
+        ++figures.frames;
+        figures.begun_sum += player.begun();
+        figures.ended_sum += player.ended();
         hash.add(print.sum);
         figures.pairs_sum += print.count;
         figures.pairs_last = print.count;
         if (frame == 0) figures.pairs_first = print.count;
         if (frame < survey.judged.size()) right = right && print == survey.judged[frame];
     }
-    figures.frames = times.size();
     figures.ms = bench::timing_of(times);
     if (!times.empty()) figures.least_ms = *std::min_element(times.begin(), times.end());
     figures.hash = hash.value();
-    figures.stats = finder.stats();
-    if (automatic) tell_choice(finder, populations, figures);
+    figures.stats = player.finder().stats();
+    if (automatic) tell_choice(player.finder(), populations, figures);
     if (!survey.judged.empty()) figures.right = right;
     return figures;
 }

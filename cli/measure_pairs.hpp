@@ -25,9 +25,10 @@ struct PairFigures {
     std::string skipped;
     int threads = 1;
     std::uint64_t frames = 0;
-    double build_ms = 0;  ///< filling it with the first frame, pairs of what rests included
-    bench::Timing ms;     ///< of a frame: taking the new boxes and finding all current pairs
-    double least_ms = 0;  ///< of a frame: what a busy machine disturbs least
+    double build_ms = 0;                         ///< filling it with the first frame, pairs of what rests included
+    bench::Timing ms;                            ///< of a frame: taking the new boxes and finding all current pairs
+    std::uint64_t begun_sum = 0, ended_sum = 0;  ///< pairs that did, all frames but the first; when changes are told
+    double least_ms = 0;                         ///< of a frame: what a busy machine disturbs least
     std::uint64_t pairs_first = 0, pairs_last = 0, pairs_sum = 0;  ///< of the first frame, the last one, all
     std::uint64_t hash = 0;       ///< of the pair sets of all frames; the order of pairs within a frame does not count
     broad::StructureStats stats;  ///< of the structures, after the last frame
@@ -49,8 +50,11 @@ struct TraceSurvey {
 /// from a sample of its boxes.
 Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell);
 
-/// Plays the trace to a structure. With a limit, a structure that would take more seconds, or has, is skipped.
+/// Plays the trace to a structure. With `changes`, a frame tells which pairs began, stay and ended instead of listing
+/// all, and what is checked are the sets that follow from them. With a limit, a structure that would take more seconds,
+/// or has, is skipped.
 Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
-                                  TaskRunner& tasks, std::optional<double> most_seconds, const Tell& tell);
+                                  TaskRunner& tasks, bool changes, std::optional<double> most_seconds,
+                                  const Tell& tell);
 
 }  // namespace fase::cli

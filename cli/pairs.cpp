@@ -26,13 +26,14 @@ std::string json_of(const PairFigures& row) {
             "\"frames\": {}, \"build_ms\": {:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": "
             "{:.6g}, \"least\": {:.6g}}}, "
             "\"pairs_first\": {}, \"pairs_last\": {}, \"pairs_sum\": {}, \"hash\": \"{:016x}\", \"bytes\": {}, "
-            "\"depth\": {}, \"nodes\": {}, \"boxes_per_leaf\": {:.4g}, \"checked\": {}, ",
+            "\"depth\": {}, \"nodes\": {}, \"boxes_per_leaf\": {:.4g}, \"checked\": {}, \"begun_sum\": {}, "
+            "\"ended_sum\": {}, ",
             row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.least_ms, row.pairs_first,
             row.pairs_last, row.pairs_sum, row.hash, row.stats.bytes, row.stats.depth, row.stats.nodes,
-            row.stats.occupancy(), row.right ? (*row.right ? "true" : "false") : "null");
+            row.stats.occupancy(), row.right ? (*row.right ? "true" : "false") : "null", row.begun_sum, row.ended_sum);
     } else {
         for (const char* key : {"frames", "build_ms", "ms", "pairs_first", "pairs_last", "pairs_sum", "hash", "bytes",
-                                "depth", "nodes", "boxes_per_leaf", "checked"})
+                                "depth", "nodes", "boxes_per_leaf", "checked", "begun_sum", "ended_sum"})
             text += fmt::format("\"{}\": null, ", key);
     }
     return text + fmt::format("\"chosen\": {}, \"reason\": {}, \"skipped\": {}}}", scene::quoted(row.chosen),
@@ -63,6 +64,9 @@ std::string to_table(const std::vector<PairFigures>& rows) {
                    row.right ? (*row.right ? "ok" : "WRONG") : "-"});
     }
     std::string text = table.text();
+    for (const PairFigures& row : rows)
+        if (row.begun_sum + row.ended_sum != 0)
+            text += fmt::format("{}: {} pairs began, {} ended\n", row.structure, row.begun_sum, row.ended_sum);
     for (const PairFigures& row : rows)
         if (!row.reason.empty()) text += fmt::format("{}: {}\n", row.structure, row.reason);
     return text;
@@ -104,7 +108,7 @@ int run_pairs(const PairsOptions& options) {
     std::vector<PairFigures> rows;
     for (const StructureChoice& choice : *choices) {
         if (Interrupts::signal() != 0) break;
-        Result<PairFigures> row = measure_pairs(*trace, *seen, choice, *tasks,
+        Result<PairFigures> row = measure_pairs(*trace, *seen, choice, *tasks, options.changes,
                                                 bounded ? std::optional<double>(options.limit) : std::nullopt, tell);
         if (!row) return refuse(row.error());
         if (Interrupts::signal() == 0) rows.push_back(*std::move(row));
@@ -128,6 +132,7 @@ void add_pairs(CLI::App& app, Start& start) {
     add_positive_number(command, "--limit", "Seconds; of all, those that take longer are skipped (default 60)", 1e6,
                         [&pairs](double value) { pairs.limit = value; });
     command.add_flag("--check", pairs.check, "Hold the pairs of each frame against a plain sweep's");
+    command.add_flag("--changes", pairs.changes, "Tell which pairs began, stay and ended, instead of listing all");
     add_json(command, pairs.json);
     command.footer(
         "\nExamples:\n"

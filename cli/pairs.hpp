@@ -18,6 +18,7 @@ struct PairsOptions {
     std::uint64_t frames = 0;        ///< the first so many; 0: all
     double limit = 60;               ///< s; with `all`: structures that take longer are skipped, and said to be
     bool check = false;              ///< hold the pairs of each frame against a judge's
+    bool changes = false;            ///< tell begun and ended pairs instead of listing all
     bool json = false;               ///< one JSON array on stdout instead of a table
 };
 

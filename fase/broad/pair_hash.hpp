@@ -15,6 +15,20 @@ struct PairSetPrint {
     std::uint64_t sum = 0;    ///< of a number a pair
     std::uint64_t other = 0;  ///< of another one
     friend bool operator==(const PairSetPrint&, const PairSetPrint&) = default;
+    /// The print of a set with the pairs of another, of which it has none, added.
+    PairSetPrint& operator+=(const PairSetPrint& more) {
+        count += more.count;
+        sum += more.sum;
+        other += more.other;
+        return *this;
+    }
+    /// The print of a set without the pairs of another, all of which it has.
+    PairSetPrint& operator-=(const PairSetPrint& less) {
+        count -= less.count;
+        sum -= less.sum;
+        other -= less.other;
+        return *this;
+    }
 };
 
 /// O(pairs); the order does not count.

@@ -22,6 +22,8 @@ class PairTracker {
 public:
     /// @param kind an empty structure: what the boxes stand in
     explicit PairTracker(const broad::AnyStructure& kind = {}) : finder_(kind) {}
+    /// @param finder an empty one, such as PairFinder::automatic()
+    explicit PairTracker(broad::PairFinder finder) : finder_(std::move(finder)) {}
 
     /// Replaces all boxes; all pairs are begun. `populations` is as long as `boxes`.
     PairChanges build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const broad::Population> populations);

@@ -30,7 +30,8 @@ TEST_F(Pairs, PrintsTheKeysThatScriptsRelyOn) {
     ASSERT_EQ(rows.size(), 1u);
     expect_keys(rows[0], row_keys);
     EXPECT_EQ(text_at(rows[0], "structure"), "auto");
-    EXPECT_EQ(text_at(rows[0], "chosen"), broad::default_structure);
+    EXPECT_EQ(text_at(rows[0], "chosen"), "brute_force") << "of four boxes";
+    EXPECT_NE(text_at(rows[0], "reason").find("few boxes"), std::string::npos);
     EXPECT_EQ(number_at(rows[0], "threads"), 1);
     EXPECT_EQ(number_at(rows[0], "frames"), 3);
     // {1, 2}; then {2, 3} too, which touch; then {0, 3}, {1, 3} besides.
@@ -41,6 +42,22 @@ TEST_F(Pairs, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_EQ(text_at(rows[0], "hash").size(), 16u);
     expect_keys(*rows[0].find("ms"), {"mean", "median", "worst"});
     EXPECT_GT(number_at(rows[0], "bytes"), 0);
+}
+
+TEST_F(Pairs, TellsBegunAndEndedPairs) {
+    for (const char* structure : {"auto", "all"}) {
+        const Outcome outcome = run_fase({"pairs", trace, "--changes", "--check", "--json", "--structure", structure});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Rows rows(outcome.out);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            EXPECT_TRUE(is_true(rows[i], "checked"));
+            EXPECT_EQ(number_at(rows[i], "begun_sum"), 3);
+            EXPECT_EQ(number_at(rows[i], "ended_sum"), 0);
+            EXPECT_EQ(number_at(rows[i], "pairs_sum"), 7);
+        }
+    }
+    const Outcome table = run_fase({"pairs", trace, "--changes"});
+    EXPECT_NE(table.out.find("3 pairs began, 0 ended"), std::string::npos) << table.out;
 }
 
 TEST_F(Pairs, AllStructuresAgreeWithAnyThreads) {
