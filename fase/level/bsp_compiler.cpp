@@ -43,7 +43,7 @@ public:
             outline_.assign(corners_.begin() + cell.first_corner, corners_.end());
             pieces_.resize(cell.first_piece);
             corners_.resize(cell.first_corner);
-            const std::uint32_t plane = choice.choose(inside_);
+            const std::uint32_t plane = choice.choose(inside_, cell.depth);
             const bool is_leaf = plane == Plan::no_plane;
             const auto index = static_cast<std::uint32_t>(is_leaf ? tree_.leaves.size() : tree_.nodes.size());
             if (cell.parent != CellCorner::none)

@@ -6,12 +6,19 @@
 
 namespace fase::level {
 
+/// How long partition lines are sought.
+enum class Effort {
+    Quick,     ///< the line that looks best is taken
+    Normal,    ///< in small sets the best six are tried out
+    Thorough,  ///< in larger sets too, more of them, and twice over: some five times the time of Normal
+};
+
 /// How partition lines are chosen.
 struct CompileOptions {
-    /// What one cut seg costs, in segs by which one side may be heavier than the other. More: fewer cuts, a deeper
-    /// tree.
-    double split_weight = 8;
-    /// So many different lines are weighed at a node, spread over all when there are more.
+    /// What one cut seg costs, in steps down the tree of one sub-sector; 0 or more. More: fewer cuts, a deeper tree.
+    double split_weight = 1;
+    Effort effort = Effort::Normal;
+    /// So many different lines are weighed at a node, at least 1, spread over all when there are more.
     std::size_t candidates = 512;
     /// Capacity error when more pieces come to be; lines that cross each other everywhere have n^2.
     std::size_t most_pieces = std::size_t{1} << 22;

@@ -20,16 +20,8 @@ namespace fase::level {
 
 HWY_EXPORT(count_sides_wide);
 
-void PieceColumns::resize(std::size_t pieces) {
-    count = pieces;
-    for (std::vector<float>* column : {&ax, &ay, &bx, &by, &weight}) {
-        if (column->size() < pieces + padding) column->resize(pieces + padding);
-        for (std::size_t i = pieces; i < pieces + padding; ++i) (*column)[i] = 0;
-    }
-}
-
-SideCounts count_sides(const PieceColumns& pieces, const FloatLine& line) {
-    return HWY_DYNAMIC_DISPATCH(count_sides_wide)(pieces, line);
+void count_sides(const PieceView& pieces, std::span<const FloatLine> lines, SideCounts* counts) {
+    HWY_DYNAMIC_DISPATCH(count_sides_wide)(pieces, lines, counts);
 }
 
 }  // namespace fase::level

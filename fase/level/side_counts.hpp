@@ -1,20 +1,17 @@
 #pragma once
 /// How much of a set of pieces lies on either side of a line: the inner loop of choosing partition lines.
 #include <cstddef>
-#include <vector>
+#include <span>
 
 namespace fase::level {
 
-/// Pieces of lines, column by column, relative to some centre. Behind the last there is room for a full vector of
-/// pieces of no weight.
-struct PieceColumns {
+/// Pieces of lines, column by column, relative to some centre; `padding` more can be read behind the last, of no
+/// weight.
+struct PieceView {
     static constexpr std::size_t padding = 16;
-    std::vector<float> ax, ay, bx, by;
-    std::vector<float> weight;  ///< segs: 1 or 2 a piece
+    const float *ax = nullptr, *ay = nullptr, *bx = nullptr, *by = nullptr;
+    const float* weight = nullptr;  ///< segs: 1 or 2 a piece
     std::size_t count = 0;
-
-    /// Makes room for `pieces`; the columns are then to be filled, with weight 0 in the padding.
-    void resize(std::size_t pieces);
 };
 
 /// A line as nx * y - ny * x = offset, (nx, ny) its direction of length 1.
@@ -31,7 +28,8 @@ struct SideCounts {
 /// Points within this distance count as on the line, in map units; above what floats lose on a map of 2^16 units.
 inline constexpr float near_line = 1.0F / 32;
 
-/// Counts exactly what the rounded numbers say, the same on every processor: whole weights below 2^24 in sum.
-[[nodiscard]] SideCounts count_sides(const PieceColumns& pieces, const FloatLine& line);
+/// Counts for each of the lines, exactly what the rounded numbers say, the same on every processor: whole weights below
+/// 2^24 in sum. `counts` has room for as many as there are lines.
+void count_sides(const PieceView& pieces, std::span<const FloatLine> lines, SideCounts* counts);
 
 }  // namespace fase::level
