@@ -1,0 +1,167 @@
+/// Lines of words into corners and triangles.
+#include "fase/scene/obj.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "fase/core/files.hpp"
+#include "fase/scene/json.hpp"
+
+namespace fase::scene {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 30;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// Gives out one word after the other; a `\` before a line's end is a blank.
+class Words {
+public:
+    explicit Words(std::string_view text) : text_(text) {}
+
+    /// The next word of the line; empty at its end.
+    std::string_view next() {
+        while (at_ < text_.size() && (is_blank(text_[at_]) || continues())) {
+            if (text_[at_] == '\\') {
+                at_ = text_.find('\n', at_);
+                ++line_;
+            }
+            ++at_;
+        }
+        const std::size_t first = at_;
+        while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) && !continues()) ++at_;
+        return text_.substr(first, at_ - first);
+    }
+    /// To the next line; false when there is none.
+    bool next_line() {
+        while (!next().empty()) {
+        }
+        if (at_ >= text_.size()) return false;
+        ++at_;
+        ++line_;
+        return at_ < text_.size();
+    }
+    [[nodiscard]] std::size_t line() const { return line_; }
+
+private:
+    std::string_view text_;
+    std::size_t at_ = 0, line_ = 1;
+
+    [[nodiscard]] bool continues() const {
+        if (text_[at_] != '\\') return false;
+        const std::size_t behind = at_ + 1 < text_.size() && text_[at_ + 1] == '\r' ? at_ + 2 : at_ + 1;
+        return behind < text_.size() && text_[behind] == '\n';
+    }
+};
+
+template <class Number> bool whole(std::string_view word, Number& number) {
+    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), number);
+    return problem == std::errc{} && end == word.data() + word.size();
+}
+
+/// A corner of a face, laid flat.
+struct Flat {
+    double x = 0, y = 0;
+};
+double turn(Flat a, Flat b, Flat c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+
+/// Faces of more corners than this become fans: finding ears costs the square.
+constexpr std::size_t most_ears = 512;
+
+/// Cuts a face into triangles, ear by ear; what has no ear left (it crosses itself) becomes a fan. The corners are used
+/// up. Source: Meisters 1975, Polygons have ears.
+void add_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& face) {
+    Vec3d normal{};
+    const auto corner = [&](std::size_t i) { return to_double(mesh.positions[face[i % face.size()]]); };
+    for (std::size_t i = 0; i < face.size(); ++i) normal += cross(corner(i) - corner(0), corner(i + 1) - corner(0));
+    const Vec3d size = abs(normal);
+    const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+    const bool turned = normal[axis] < 0;
+    const auto flat = [&](std::size_t i) {
+        const Vec3d p = corner(i);
+        const Flat f{p[(axis + 1) % 3], p[(axis + 2) % 3]};
+        return turned ? Flat{f.y, f.x} : f;
+    };
+    const auto is_ear = [&](std::size_t i) {
+        const Flat a = flat(i), b = flat(i + 1), c = flat(i + 2);
+        if (!(turn(a, b, c) > 0)) return false;
+        for (std::size_t k = i + 3; k < i + face.size(); ++k) {
+            const Flat p = flat(k);
+            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+        }
+        return true;
+    };
+    while (face.size() > 3 && face.size() <= most_ears) {
+        std::size_t ear = 0;
+        while (ear < face.size() && !is_ear(ear)) ++ear;
+        if (ear == face.size()) break;
+        const std::size_t tip = (ear + 1) % face.size();
+        mesh.indices.insert(mesh.indices.end(), {face[ear], face[tip], face[(ear + 2) % face.size()]});
+        face.erase(face.begin() + static_cast<std::ptrdiff_t>(tip));
+    }
+    for (std::size_t i = 2; i < face.size(); ++i)
+        mesh.indices.insert(mesh.indices.end(), {face[0], face[i - 1], face[i]});
+}
+
+}  // namespace
+
+Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    TriangleMesh mesh;
+    Words words(text);
+    std::optional<Error> error;
+    const auto fail = [&](std::string problem) {
+        error = Error{Status::Format, fmt::format("{}:{}", name, words.line()), std::move(problem), {}};
+    };
+    const auto read_corner = [&] {
+        Vec3 corner;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::string_view word = words.next();
+            double number = 0;
+            if (!whole(word, number) || !std::isfinite(static_cast<float>(number)))
+                return fail(fmt::format("found {} as a coordinate, need a number that a float can hold",
+                                        word.empty() ? "nothing" : quoted_short(word)));
+            corner[axis] = static_cast<float>(number);
+        }
+        mesh.positions.push_back(corner);
+    };
+    std::vector<std::uint32_t> face;
+    const auto read_face = [&] {
+        face.clear();
+        for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+            std::int64_t number = 0;
+            const auto corners = static_cast<std::int64_t>(mesh.positions.size());
+            if (!whole(word.substr(0, word.find('/')), number))
+                return fail(fmt::format("found {} as a corner of a face, need its number", quoted_short(word)));
+            const std::int64_t index = number > 0 ? number - 1 : corners + number;
+            if (number == 0 || index < 0 || index >= corners)
+                return fail(fmt::format("found corner {}, need one of the {} before this line", number, corners));
+            face.push_back(static_cast<std::uint32_t>(index));
+        }
+        if (face.size() < 3) return fail(fmt::format("found a face of {} corners, need at least 3", face.size()));
+        add_triangles(mesh, face);
+    };
+    if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos)
+        return Error{Status::Format, fmt::format("{}:{}", name, nul), "found a byte 0, need text", {}};
+    if (text.empty()) return mesh;
+    do {
+        const std::string_view what = words.next();
+        if (what == "v") read_corner();
+        if (what == "f") read_face();
+        if (error) return *std::move(error);
+    } while (words.next_line());
+    return mesh;
+}
+
+Result<TriangleMesh> read_obj(const std::string& path) {
+    const Result<std::vector<std::byte>> bytes = read_file(path, most_bytes);
+    if (!bytes) return bytes.error();
+    return parse_obj(path, *bytes);
+}
+
+}  // namespace fase::scene
