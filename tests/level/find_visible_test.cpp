@@ -1,0 +1,259 @@
+#include "fase/level/find_visible.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fase/level/doorways.hpp"
+#include "fase/level/seen_from.hpp"
+#include "tests/level/freedoom.hpp"
+
+namespace fase::level {
+namespace {
+
+/// How many passages of sight rays lead into what is told to be hidden.
+struct Checked {
+    std::size_t passages = 0, falsely_hidden = 0;
+};
+Checked check_by_rays(const Level& level, const VisibleSets& sets, Heights heights, int rays) {
+    Checked checked;
+    const PlanBox box = box_of(level.bsp);
+    Random random(9);
+    std::vector<Passage> way;
+    for (int i = 0; i < rays; ++i) {
+        const LevelRay ray = ray_inside(level, box, random);
+        const std::uint32_t from = *sub_sector_at(level.bsp, ray.from);
+        way.clear();
+        passages(level.bsp, level.map, ray, heights, way);
+        for (const Passage& passage : way) {
+            ++checked.passages;
+            checked.falsely_hidden += sets.sees(from, passage.sub_sector) ? 0 : 1;
+        }
+    }
+    return checked;
+}
+
+Level grid(const std::vector<std::string>& rows) {
+    Level level{"grid", grid_map(rows, [](char c) { return c == 'c' ? std::pair{0, 0} : std::pair{0, 128}; }), {}};
+    level.bsp = *compile(level.map);
+    return level;
+}
+
+TEST(VisibleSets, GiveBackTheBitsTheyWereMadeFrom) {
+    for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 700u}) {
+        for (const int density : {0, 1, 40, 128, 255, 256}) {
+            Random random(count * 1000 + static_cast<std::size_t>(density));
+            std::vector<std::vector<std::uint64_t>> rows(count, std::vector<std::uint64_t>((count + 63) / 64, 0));
+            for (auto& row : rows)
+                for (std::size_t i = 0; i < count; ++i)
+                    if (random.below(256) < static_cast<std::uint64_t>(density)) row[i / 64] |= 1ull << i % 64;
+            const VisibleSets sets =
+                VisibleSets::of(count, [&](std::size_t i) -> std::span<const std::uint64_t> { return rows[i]; });
+            ASSERT_EQ(sets.size(), count);
+            std::size_t pairs = 0;
+            for (std::uint32_t a = 0; a < count; ++a) {
+                std::vector<std::uint32_t> expected, seen;
+                for (std::uint32_t b = 0; b < count; ++b)
+                    if ((rows[a][b / 64] >> b % 64 & 1) != 0) expected.push_back(b);
+                sets.for_each_seen(a, [&](std::uint32_t b) { seen.push_back(b); });
+                EXPECT_EQ(seen, expected);
+                EXPECT_EQ(sets.seen_by(a), expected.size());
+                pairs += expected.size();
+                for (std::uint32_t b = 0; b < count; b += 7)
+                    EXPECT_EQ(sets.sees(a, b), (rows[a][b / 64] >> b % 64 & 1) != 0);
+            }
+            EXPECT_EQ(sets.pairs(), pairs);
+        }
+    }
+}
+
+TEST(FindVisible, HidesNothingThatARaySees) {
+    const auto levels = freedoom_levels({"e1m1.wad", "map07.wad", "map29.wad", "e4m5.wad"});
+    if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
+    for (const Level& level : levels) {
+        for (const Heights heights : {Heights::Ignored, Heights::Counted}) {
+            const auto found = find_visible(level.bsp, level.map, {.heights = heights});
+            ASSERT_TRUE(found);
+            const Checked checked = check_by_rays(level, found->sets, heights, 20000);
+            EXPECT_EQ(checked.falsely_hidden, 0u) << level.name;
+            EXPECT_GT(checked.passages, 20000u);
+            const std::size_t n = level.bsp.sub_sectors.size();
+            EXPECT_LT(found->stats.pairs, n * n * 6 / 10) << level.name;
+            EXPECT_EQ(found->stats.coarse, 0u);
+        }
+    }
+}
+
+TEST(FindVisible, SeesMostlyWhatPointsSee) {
+    const auto levels = freedoom_levels({"e1m1.wad"});
+    if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
+    const Level& level = levels[0];
+    const auto found = find_visible(level.bsp, level.map);
+    ASSERT_TRUE(found);
+    // Pairs that points of one sub-sector see of another are the least that the sets may hold.
+    const std::size_t n = level.bsp.sub_sectors.size();
+    std::vector<std::uint8_t> truly(n * n, 0);
+    const PlanBox box = box_of(level.bsp);
+    Random random(12);
+    for (int i = 0; i < 8000; ++i) {
+        const Point p = place_inside(level.bsp, box, random);
+        const std::uint32_t from = *sub_sector_at(level.bsp, p);
+        const auto seen = seen_from(level.bsp, level.map, {p, 0});
+        ASSERT_TRUE(seen);
+        for (const std::uint32_t to : seen->sub_sectors) {
+            EXPECT_TRUE(found->sets.sees(from, to));
+            truly[from * n + to] = truly[to * n + from] = 1;
+        }
+    }
+    const auto least = static_cast<std::size_t>(std::count(truly.begin(), truly.end(), std::uint8_t{1}));
+    EXPECT_LT(found->stats.pairs, least * 23 / 20);
+}
+
+TEST(FindVisible, KnowsWhatIsBehindCorners) {
+    // An L of squares: its two ends do not see each other; all else near does.
+    const Level level = grid({"aaaaaa", "     a", "     a", "     a", "     a"});
+    const auto found = find_visible(level.bsp, level.map);
+    ASSERT_TRUE(found);
+    const auto at = [&](double x, double y) { return *sub_sector_at(level.bsp, {x * 64 + 32, y * 64 + 32}); };
+    EXPECT_FALSE(found->sets.sees(at(0, 4), at(5, 0)));
+    EXPECT_FALSE(found->sets.sees(at(5, 0), at(0, 4)));
+    EXPECT_TRUE(found->sets.sees(at(0, 4), at(5, 4)));
+    EXPECT_TRUE(found->sets.sees(at(5, 0), at(5, 4)));
+    EXPECT_TRUE(found->sets.sees(at(4, 4), at(5, 3)));
+}
+
+TEST(FindVisible, ClosedDoorsHideOnlyWhenHeightsCount) {
+    const Level level = grid({"aaacaaa"});
+    const auto at = [&](double x) { return *sub_sector_at(level.bsp, {x * 64 + 32, 32}); };
+    const auto open = find_visible(level.bsp, level.map);
+    const auto shut = find_visible(level.bsp, level.map, {.heights = Heights::Counted});
+    ASSERT_TRUE(open && shut);
+    EXPECT_TRUE(open->sets.sees(at(0), at(6)));
+    EXPECT_FALSE(shut->sets.sees(at(0), at(6)));
+    EXPECT_TRUE(shut->sets.sees(at(0), at(2)));
+}
+
+TEST(FindVisible, HighWindowsHideWhatLiesFarBelow) {
+    // Through a low gap and then a high one close behind it no straight line runs on far.
+    const auto room = [](char c) {
+        return c == 'l' ? std::pair{0, 8} : c == 'h' ? std::pair{120, 128} : std::pair{0, 128};
+    };
+    Level level{"gaps", grid_map({"aaalhaaa"}, room), {}};
+    level.bsp = *compile(level.map);
+    const auto at = [&](double x) { return *sub_sector_at(level.bsp, {x * 64 + 32, 32}); };
+    const auto counted = find_visible(level.bsp, level.map, {.heights = Heights::Counted});
+    ASSERT_TRUE(counted);
+    EXPECT_FALSE(counted->sets.sees(at(0), at(7)));
+    Level straight{"straight", grid_map({"aaallaaa"}, room), {}};
+    straight.bsp = *compile(straight.map);
+    const auto through = find_visible(straight.bsp, straight.map, {.heights = Heights::Counted});
+    ASSERT_TRUE(through);
+    EXPECT_TRUE(through->sets.sees(*sub_sector_at(straight.bsp, {32, 32}), *sub_sector_at(straight.bsp, {480, 32})));
+}
+
+TEST(FindVisible, IsSymmetricAndSeesItself) {
+    const Level level = grid({"aaaaa", "a a a", "aaaaa", "a   a", "aacaa"});
+    const auto found = find_visible(level.bsp, level.map);
+    ASSERT_TRUE(found);
+    for (std::uint32_t a = 0; a < found->sets.size(); ++a) {
+        EXPECT_TRUE(found->sets.sees(a, a));
+        for (std::uint32_t b = 0; b < a; ++b) EXPECT_EQ(found->sets.sees(a, b), found->sets.sees(b, a));
+    }
+}
+
+TEST(FindVisible, GivesTheCoarseAnswerWhenStepsRunOut) {
+    const auto levels = freedoom_levels({"e1m1.wad"});
+    if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
+    const Level& level = levels[0];
+    const auto fine = find_visible(level.bsp, level.map);
+    const auto some = find_visible(level.bsp, level.map, {.most_steps = 300});
+    const auto coarse = find_visible(level.bsp, level.map, {.most_steps = 0});
+    ASSERT_TRUE(fine && some && coarse);
+    EXPECT_GT(some->stats.coarse, 0u);
+    EXPECT_LT(some->stats.coarse, some->stats.openings);
+    EXPECT_EQ(coarse->stats.coarse, coarse->stats.openings);
+    EXPECT_LT(fine->stats.pairs, some->stats.pairs);
+    EXPECT_LT(some->stats.pairs, coarse->stats.pairs);
+    EXPECT_EQ(check_by_rays(level, some->sets, Heights::Ignored, 3000).falsely_hidden, 0u);
+    EXPECT_EQ(check_by_rays(level, coarse->sets, Heights::Ignored, 3000).falsely_hidden, 0u);
+}
+
+TEST(FindVisible, GivesTheSameSetsForAnyNumberOfThreads) {
+    const auto levels = freedoom_levels({"e1m1.wad"});
+    if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
+    const auto two = make_thread_runner(2), three = make_thread_runner(3);
+    const auto alone = find_visible(levels[0].bsp, levels[0].map);
+    for (TaskRunner* tasks : {two.get(), three.get()}) {
+        const auto found = find_visible(levels[0].bsp, levels[0].map, {.tasks = tasks});
+        ASSERT_TRUE(alone && found);
+        EXPECT_EQ(found->sets, alone->sets);
+        EXPECT_EQ(found->stats.steps, alone->stats.steps);
+    }
+}
+
+TEST(FindVisible, SaysHowMuchMemoryItNeeds) {
+    const Level level = grid({"aaaaa"});
+    const auto refused = find_visible(level.bsp, level.map, {.most_bytes = 3});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.status(), Status::Capacity);
+    EXPECT_EQ(refused.error().where, "VisibleOptions.most_bytes");
+}
+
+TEST(SeenFrom, SeesWhatRaysMeet) {
+    auto levels = freedoom_levels({"e1m1.wad", "map07.wad"});
+    levels.push_back(grid({"aaaaa", "a a a", "aaaaa", "a   a", "aacaa"}));
+    for (const Level& level : levels) {
+        const PlanBox box = box_of(level.bsp);
+        Random random(21);
+        for (int i = 0; i < 40; ++i) {
+            LevelRay ray = ray_inside(level, box, random);
+            for (const Heights heights : {Heights::Ignored, Heights::Counted}) {
+                const auto seen = seen_from(level.bsp, level.map, {ray.from, ray.z}, heights);
+                ASSERT_TRUE(seen);
+                EXPECT_TRUE(seen->complete);
+                for (int k = 0; k < 100; ++k) {
+                    ray.direction = {double(random.between(-1, 1)), double(random.between(-1, 1))};
+                    ray.rise = double(random.between(-0.5f, 0.5f));
+                    std::vector<Passage> way;
+                    passages(level.bsp, level.map, ray, heights, way);
+                    for (const Passage& passage : way) {
+                        if (passage.to - passage.from < 1e-6 * passage.to) continue;
+                        EXPECT_TRUE(
+                            std::binary_search(seen->sub_sectors.begin(), seen->sub_sectors.end(), passage.sub_sector))
+                            << level.name;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(SeenFrom, MeasuresTheSurfaceThatRaysSweep) {
+    // A square of 3 by 3 around a pillar, seen from the middle of a side.
+    const Level level = grid({"aaa", "a a", "aaa"});
+    const auto all = seen_from(level.bsp, level.map, {{96, 32}, 0});
+    ASSERT_TRUE(all);
+    // The lower row at least, and no more than the columns beside the pillar too.
+    const double lower = 192 * 64, column = 64 * 128;
+    EXPECT_LT(all->area, lower + 2 * column);
+    EXPECT_GT(all->area, lower);
+    // Against the count of points that a line from the eye reaches.
+    Random random(30);
+    const PlanBox box = box_of(level.bsp);
+    int seen = 0;
+    constexpr int asked = 40000;
+    for (int i = 0; i < asked; ++i) {
+        const Point p = place_in(box, random);
+        if (!sub_sector_at(level.bsp, p)) continue;
+        const auto hit = cast_ray(level.bsp, level.map, {{96, 32}, 0, {p.x - 96, p.y - 32}, 0, 1}, Heights::Ignored);
+        seen += hit ? 0 : 1;
+    }
+    EXPECT_NEAR(all->area, 192.0 * 192.0 * seen / asked, 192 * 192 * 0.02);
+}
+
+TEST(SeenFrom, KnowsNothingOutside) {
+    const Level level = grid({"aaa"});
+    EXPECT_FALSE(seen_from(level.bsp, level.map, {{-50, 0}, 0}));
+    EXPECT_FALSE(seen_from(level.bsp, level.map, {{std::numeric_limits<double>::quiet_NaN(), 0}, 0}));
+}
+
+}  // namespace
+}  // namespace fase::level
