@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/benchmarks.md from the figures in bench/results (step, structures, pairs and queries).
+"""Writes docs/benchmarks.md from the figures in bench/results (step, structures, sizes, pairs and queries).
 
 Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when the page is not what the
 figures give. Of several rows for one machine, scene, engine and number of threads the last one in the file counts.
@@ -7,6 +7,8 @@ figures give. Of several rows for one machine, scene, engine and number of threa
 import csv
 import sys
 from pathlib import Path
+
+import size_chart
 
 FIGURES = "bench/results/step.csv"
 QUERY_FIGURES = "bench/results/queries.csv"
@@ -232,17 +234,23 @@ def main(arguments):
     text = page_of(read_rows(figures))
     if (root / STRUCTURE_FIGURES).is_file():
         text += structure_page_of(root / STRUCTURE_FIGURES)
+    pages = {}
+    if (root / size_chart.FIGURES).is_file():
+        text += size_chart.section_of(root / size_chart.FIGURES)
+        pages[root / size_chart.PICTURE] = size_chart.picture_of(root / size_chart.FIGURES)
     if (root / PAIR_FIGURES).is_file():
         text += pair_page_of(root / PAIR_FIGURES)
     if (root / QUERY_FIGURES).is_file():
         text += query_page_of(read_query_rows(root / QUERY_FIGURES))
+    pages[page] = text
     if not check:
-        page.write_text(text, encoding="utf-8")
+        for path, content in pages.items():
+            path.write_text(content, encoding="utf-8")
         return 0
-    if page.is_file() and page.read_text(encoding="utf-8") == text:
-        return 0
-    print(f"{PAGE}: found other figures than in {FIGURES}, need what tools/make_tables.py writes")
-    return 1
+    stale = [path for path, content in pages.items() if not path.is_file() or path.read_text(encoding="utf-8") != content]
+    for path in stale:
+        print(f"{path.relative_to(root)}: found other figures than in bench/results, need what tools/make_tables.py writes")
+    return 1 if stale else 0
 
 
 if __name__ == "__main__":

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Times how a frame's cost grows with the number of boxes, and writes bench/results/sizes.csv.
+
+Usage: measure_sizes.py [--program build/release/fase] [--kind uniform] [--most 1000000] [REPOSITORY]. Each trace is made by
+`fase generate`; what takes more than a few seconds for it is left out. Then tools/make_tables.py.
+"""
+import argparse
+import csv
+import datetime
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from measure_structures import machine_name
+
+FIELDS = ["machine", "date", "commit", "trace", "boxes", "structure", "threads", "told", "frames", "mean_ms", "median_ms", "worst_ms",
+          "least_ms", "pairs"]
+# Structure, threads, what is told of a frame, and up to how many boxes.
+SERIES = [("auto", 1, "pairs", 10**9), ("auto", 2, "pairs", 10**9), ("auto", 1, "changes", 10**9), ("wide_bvh", 1, "pairs", 10**9),
+          ("octree", 1, "pairs", 10**9), ("dynamic_bvh", 1, "pairs", 400000), ("sweep_and_prune", 1, "pairs", 400000),
+          ("brute_force", 1, "pairs", 40000)]
+
+
+def rows_of(program, kind, count, folder):
+    """A dictionary a series, measured on one fresh trace."""
+    trace = Path(folder) / "boxes.aabt"
+    frames = max(12, min(200, 2_000_000 // count))
+    subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
+                   stdout=subprocess.DEVNULL)
+    for structure, threads, told, most in SERIES:
+        if count > most:
+            continue
+        arguments = [program, "pairs", trace, "--structure", structure, "--threads", str(threads), "--json"]
+        out = subprocess.run(arguments + (["--changes"] if told == "changes" else []), check=True, stdout=subprocess.PIPE,
+                             text=True).stdout
+        row = json.loads(out)[0]
+        yield {"trace": kind, "boxes": count, "structure": structure, "threads": threads, "told": told, "frames": row["frames"],
+               "mean_ms": row["ms"]["mean"], "median_ms": row["ms"]["median"], "worst_ms": row["ms"]["worst"],
+               "least_ms": row["ms"]["least"], "pairs": row["pairs_last"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default="build/release/fase")
+    parser.add_argument("--kind", default="uniform")
+    parser.add_argument("--most", type=int, default=1000000)
+    parser.add_argument("repository", nargs="?", default=Path(__file__).parent.parent, type=Path)
+    options = parser.parse_args()
+    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
+                            stdout=subprocess.PIPE, text=True).stdout.strip()
+    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    sizes = [round(10 ** (k / 2)) for k in range(4, 13) if round(10 ** (k / 2)) <= options.most]
+    with tempfile.TemporaryDirectory() as folder:
+        rows = [about | row for size in sizes for row in rows_of(str(options.program), options.kind, size, folder)]
+    with (options.repository / "bench/results/sizes.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
