@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "fase/broad/row_grid_kernels.hpp"
+#include "fase/core/check.hpp"
 
 namespace fase::broad {
 namespace {
@@ -52,6 +54,7 @@ void RowSet::make_room() {
 
 void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
     count_ = boxes.size();
+    dead_ = 0;
     rows_.clear();
     make_room();
     const bool other_count = count_ > fitted_count_ + fitted_count_ / 4 || count_ < fitted_count_ - fitted_count_ / 4;
@@ -120,6 +123,16 @@ void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
     rows_.push_back({INT32_MAX, INT32_MAX, level.first + level.count});
 }
 
+/// Not a number across the rows: no comparison holds. Along the row it stays where it is, for rows in order.
+void RowSet::kill(std::size_t record) {
+    FASE_ASSERT(record < count_ && proxies_[record] != killed);
+    for (const int a : {fit_.axis[1], fit_.axis[2]})
+        for (const int side : {a, a + 3})
+            columns_[static_cast<std::size_t>(side)][record] = std::numeric_limits<float>::quiet_NaN();
+    proxies_[record] = killed;
+    ++dead_;
+}
+
 RowView RowSet::view() const {
     RowView view;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -161,13 +174,14 @@ std::string RowSet::broken_record(const RowLevel& level, std::size_t i) const {
 }
 
 std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
-    if (boxes.size() != count_) return "the grid does not hold as many boxes as there are";
+    if (boxes.size() + dead_ != count_) return "the grid does not hold as many boxes as there are";
     if (count_ == 0) return {};
     const RowView set = view();
     Proxy largest = 0;
     for (const Move& m : boxes) largest = std::max(largest, m.proxy);
     std::vector<std::uint32_t> where(largest + std::size_t{1}, 0xffffffff);
     for (std::uint32_t i = 0; i < count_; ++i) {
+        if (proxies_[i] == killed) continue;
         if (proxies_[i] > largest || where[proxies_[i]] != 0xffffffff) return "a record is not of one box alone";
         where[proxies_[i]] = i;
     }
@@ -185,6 +199,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
             const std::uint32_t begin = table_[level.table + cell], end = table_[level.table + cell + 1];
             if (begin > end || end > next) return "the cells of a level are not in order";
             for (std::uint32_t i = begin; i < end; ++i) {
+                if (proxies_[i] == killed) continue;
                 std::uint32_t home = 0;
                 for (const int a : {ax, ay, az})
                     home += level.cell(a, set.lo[static_cast<std::size_t>(a)][i]) *
@@ -201,6 +216,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
             if (!(row.y < after.y || (row.y == after.y && row.z < after.z))) return "the listed rows are not in order";
             for (std::uint32_t i = row.first; i < after.first; ++i) {
                 const auto at = [&](int a) { return set.lo[static_cast<std::size_t>(a)][i]; };
+                if (proxies_[i] == killed) continue;
                 if (level.listed_cell(ay, at(ay)) != row.y || level.listed_cell(az, at(az)) != row.z)
                     return "a box stands in another's row";
                 if (i > row.first && at(ax) < set.lo[static_cast<std::size_t>(ax)][i - 1])

@@ -113,16 +113,24 @@ struct RowView {
     }
 };
 inline constexpr std::size_t row_slack = 32;
+/// The proxy of a record that RowSet::kill() has emptied.
+inline constexpr Proxy killed = 0xffffffff;
 
 /// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
 class RowSet {
 public:
     void build(std::span<const Move> boxes, const RowGridSettings& settings);
 
+    /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
+    void kill(std::size_t record);
+
     [[nodiscard]] RowView view() const;
+    /// Records, the killed ones too.
     [[nodiscard]] std::size_t size() const { return count_; }
+    [[nodiscard]] std::size_t dead() const { return dead_; }
     [[nodiscard]] std::size_t cells() const { return fit_.table + rows_.size(); }
     [[nodiscard]] std::size_t bytes() const;
+    /// Against the boxes that it should hold, in any order.
     [[nodiscard]] std::string broken_invariant(std::span<const Move> boxes) const;
 
 private:
@@ -131,7 +139,7 @@ private:
     std::vector<Proxy> proxies_;
     std::vector<std::uint32_t> table_;
     std::vector<ListedRow> rows_;
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, dead_ = 0;
     std::size_t fitted_count_ = 0;  // boxes when the levels were chosen
     std::uint32_t age_ = 0;         // builds since then
     bool stale_ = true;

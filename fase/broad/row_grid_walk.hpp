@@ -86,12 +86,12 @@ bool walk_list(const RowView& set, const RowLevel& level, const R& region, Test&
     return true;
 }
 
-/// Visits each box that touches the region; false when `visit` said stop.
+/// Visits each box that touches the region and is not killed; false when `visit` said stop.
 template <Region R, class Visit> bool walk(const RowView& set, const R& region, Visit&& visit) {
     const auto test = [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const Aabb box = set.box(i);
-            if (region.touches(box) && !visit(set.proxies[i], box)) return false;
+            if (region.touches(box) && set.proxies[i] != killed && !visit(set.proxies[i], box)) return false;
         }
         return true;
     };
