@@ -66,6 +66,15 @@ public:
         changed_ = true;
     }
 
+    /// Forgets the ordinary boxes, which have gone elsewhere.
+    void drop_ordinary() {
+        for (const Move& m : ordinary_) {
+            resting_ -= is_awake(m.proxy) ? 0 : 1;
+            places_[m.proxy] = {};
+        }
+        ordinary_.clear();
+    }
+
     /// Takes room for these boxes, so that inserting them wastes none.
     void reserve(std::span<const Move> boxes) {
         Proxy largest = 0;

@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fase/broad/box_store.hpp"
-#include "fase/broad/row_grid_walk.hpp"
+#include "fase/broad/row_part.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -29,21 +28,18 @@ public:
     RowGrid() = default;
     explicit RowGrid(const Settings& settings) : settings_(settings) {}
 
-    void insert(Proxy p, const Aabb& box) { moving_.boxes.insert(p, box); }
-    void move(Proxy p, const Aabb& box) { part_of(p).boxes.move(p, box); }
-    void erase(Proxy p) { part_of(p).boxes.erase(p); }
+    void insert(Proxy p, const Aabb& box) { moving_.insert(p, box); }
+    void move(Proxy p, const Aabb& box) { part_of(p).move(p, box); }
+    void erase(Proxy p) { part_of(p).erase(p); }
     void set_awake(Proxy p, bool awake);
-    [[nodiscard]] bool is_awake(Proxy p) const { return moving_.boxes.holds(p); }
+    [[nodiscard]] bool is_awake(Proxy p) const { return moving_.holds(p); }
     void clear();
     void commit();
     /// Replaces all that is stored by boxes that are awake, and commits.
     void build(std::span<const Move> boxes);
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
-        for (const Part* part : {&moving_, &resting_}) {
-            if (!part->boxes.traverse_odd(region, visit)) return;
-            if (!row_grid::walk(part->grid.view(), region, visit)) return;
-        }
+        if (moving_.traverse(region, visit)) resting_.traverse(region, visit);
     }
 
     void find_pairs(std::vector<Pair>& out) const { find(true, out); }
@@ -63,40 +59,41 @@ public:
     template <class Visit> void for_each_leaf(Visit&& visit) const;
 
     /// Cells of all levels, empty ones too; rows, where they stand in a list.
-    [[nodiscard]] std::size_t nodes() const { return 1 + moving_.grid.cells() + resting_.grid.cells(); }
-    [[nodiscard]] std::size_t size() const { return moving_.boxes.size() + resting_.boxes.size(); }
-    [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] std::size_t nodes() const;
+    [[nodiscard]] std::size_t size() const { return moving_.size() + resting_.size(); }
+    [[nodiscard]] std::size_t bytes() const { return sizeof(*this) + moving_.bytes() + resting_.bytes(); }
     [[nodiscard]] std::string broken_invariant() const;
     /// The cells that hold boxes; the coarsest level at depth 0.
     void cells(std::vector<DrawnCell>& out) const;
 
 private:
-    /// Boxes and the grid that they were last sorted into.
-    struct Part {
-        BoxStore boxes;
-        RowSet grid;
-    };
     Settings settings_;
-    Part moving_, resting_;
+    RowPart moving_, resting_;
 
-    [[nodiscard]] Part& part_of(Proxy p) { return moving_.boxes.holds(p) ? moving_ : resting_; }
+    [[nodiscard]] RowPart& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
     void find(bool resting_too, std::vector<Pair>& out) const;
     void find_odd(bool resting_too, std::vector<Pair>& out) const;
+    template <class F> void for_each_set(F&& f) const {
+        for (const RowPart* part : {&moving_, &resting_})
+            for (std::size_t k = 0; k < part->sets(); ++k) f(part->set(k));
+    }
 };
 
 template <class Visit> void RowGrid::for_each_leaf(Visit&& visit) const {
-    std::vector<Proxy> odd;
-    for (const Part* part : {&moving_, &resting_})
-        for (const Move& m : part->boxes.odd()) odd.push_back(m.proxy);
-    if (!odd.empty()) visit(Leaf{Aabb::everything(), odd, 0});
-    for (const Part* part : {&moving_, &resting_}) {
-        const RowView set = part->grid.view();
+    std::vector<Proxy> proxies;
+    for (const RowPart* part : {&moving_, &resting_})
+        for (const Move& m : part->odd()) proxies.push_back(m.proxy);
+    if (!proxies.empty()) visit(Leaf{Aabb::everything(), proxies, 0});
+    for_each_set([&](const RowSet& boxes) {
+        const RowView set = boxes.view();
         row_grid::for_each_cell(set,
                                 [&](const RowLevel& level, const Aabb& cell, std::uint32_t begin, std::uint32_t end) {
-                                    const auto depth = static_cast<int>(&set.levels.back() - &level);
-                                    visit(Leaf{cell, std::span(set.proxies + begin, end - begin), depth});
+                                    proxies.assign(set.proxies + begin, set.proxies + end);
+                                    if (boxes.dead() > 0) std::erase(proxies, killed);
+                                    if (proxies.empty()) return;
+                                    visit(Leaf{cell, proxies, static_cast<int>(&set.levels.back() - &level)});
                                 });
-    }
+    });
 }
 
 }  // namespace fase::broad

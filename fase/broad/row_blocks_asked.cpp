@@ -1,0 +1,73 @@
+/// Who asks which block: a few askers at a time are held against the bounds of all sets, then each set gets those that
+/// reach it.
+#include <algorithm>
+#include <limits>
+
+#include "fase/broad/row_blocks.hpp"
+
+namespace fase::broad {
+namespace {
+
+constexpr std::size_t most_askers = 128;
+
+/// Askers turned into columns.
+struct AskerColumns {
+    std::array<std::array<float, most_askers + BoxColumns::padding>, 6> bounds;
+    std::array<Proxy, 1> none{};
+
+    void fill(std::span<const Move> askers) {
+        for (std::size_t i = 0; i < askers.size(); ++i) {
+            const Aabb& box = askers[i].box;
+            bounds[0][i] = box.lo.x;
+            bounds[1][i] = box.lo.y;
+            bounds[2][i] = box.lo.z;
+            bounds[3][i] = box.hi.x;
+            bounds[4][i] = box.hi.y;
+            bounds[5][i] = box.hi.z;
+        }
+        for (std::array<float, most_askers + BoxColumns::padding>& bound : bounds)
+            for (std::size_t i = askers.size(); i < askers.size() + BoxColumns::padding; ++i) bound[i] = 0;
+    }
+    [[nodiscard]] ColumnsView view(std::size_t count) const {
+        return {{bounds[0].data(), bounds[1].data(), bounds[2].data()},
+                {bounds[3].data(), bounds[4].data(), bounds[5].data()},
+                none.data(),
+                count};
+    }
+};
+
+}  // namespace
+
+void RowBlocks::find_asked_pairs(const row_grid::Askers& askers, std::uint32_t after, row_grid::PairBlock& out) const {
+    if (size_ == 0) return;
+    AskerColumns columns;
+    std::array<std::uint32_t, most_askers + BoxColumns::padding> reaching;
+    std::array<Move, most_askers> chosen;
+    for (std::size_t begin = 0; begin < askers.boxes.size(); begin += most_askers) {
+        const std::span<const Move> some =
+            askers.boxes.subspan(begin, std::min(most_askers, askers.boxes.size() - begin));
+        Aabb around;
+        for (const Move& m : some) around = merge(m.box, around);  // a NaN in m.box gives the other
+        bool filled = false;
+        for_each_set_near(around, [&](std::uint32_t k) {
+            const RowSet& boxes = set(k);
+            if (after != none) {
+                const std::size_t mine = set(after).size();
+                if (boxes.size() < mine || (boxes.size() == mine && k <= after)) return true;
+            }
+            const Aabb bounds = bounds_.box(k);
+            if (some.size() == 1 || contains(bounds, around)) {
+                row_grid::find_asked_pairs(boxes.view(), {some, askers.is_asker}, out);
+                return true;
+            }
+            if (!filled) columns.fill(some);
+            filled = true;
+            const std::size_t count = scan_touching(columns.view(some.size()), 0, some.size(), bounds, reaching.data());
+            for (std::size_t i = 0; i < count; ++i) chosen[i] = some[reaching[i]];
+            if (count > 0) row_grid::find_asked_pairs(boxes.view(), {{chosen.data(), count}, askers.is_asker}, out);
+            return true;
+        });
+    }
+}
+
+}  // namespace fase::broad

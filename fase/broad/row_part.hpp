@@ -1,0 +1,73 @@
+#pragma once
+/// One population of a row grid: boxes that are sorted anew whenever one of them moves, and boxes that stand in blocks.
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "fase/broad/box_store.hpp"
+#include "fase/broad/row_blocks.hpp"
+
+namespace fase::broad {
+
+/// Each box is loose or in a block. New boxes and those that move are loose; commit() sorts all that are loose, and
+/// settle() puts them into blocks first. Odd boxes are loose, and in no sorted set.
+class RowPart {
+public:
+    void insert(Proxy p, const Aabb& box) { loose_.insert(p, box); }
+    void move(Proxy p, const Aabb& box) {
+        if (loose_.holds(p)) return loose_.move(p, box);
+        blocks_.erase(p);
+        loose_.insert(p, box);
+    }
+    void erase(Proxy p) { loose_.holds(p) ? loose_.erase(p) : blocks_.erase(p); }
+    void clear();
+    void reserve(std::span<const Move> boxes) { loose_.reserve(boxes); }
+    void commit(const RowGridSettings& settings);
+    /// commit() for boxes that are likely to stay where they are.
+    void settle(const RowGridSettings& settings);
+
+    [[nodiscard]] bool holds(Proxy p) const { return loose_.holds(p) || blocks_.holds(p); }
+    [[nodiscard]] Aabb box(Proxy p) const { return loose_.holds(p) ? loose_.box(p) : blocks_.box(p); }
+    [[nodiscard]] std::size_t size() const { return loose_.size() + blocks_.size(); }
+    [[nodiscard]] std::span<const Move> odd() const { return loose_.odd(); }
+
+    /// The sorted sets: of the loose boxes, then those of the blocks.
+    [[nodiscard]] std::size_t sets() const { return 1 + blocks_.sets(); }
+    [[nodiscard]] const RowSet& set(std::size_t k) const { return k == 0 ? sorted_ : blocks_.set(k - 1); }
+    /// The pairs of askers with all ordinary boxes.
+    void find_asked_pairs(const row_grid::Askers& askers, row_grid::PairBlock& out) const {
+        row_grid::find_asked_pairs(sorted_.view(), askers, out);
+        blocks_.find_asked_pairs(askers, RowBlocks::none, out);
+    }
+    /// The pairs of the records from `begin` to `end` of set k with later ones of their set and with all sets that come
+    /// after it: each pair of ordinary boxes once, when all sets have been asked so.
+    void find_own_pairs(std::size_t k, std::size_t begin, std::size_t end, row_grid::PairBlock& out) const;
+
+    template <Region R, class Visit> bool traverse(const R& region, Visit&& visit) const {
+        return loose_.traverse_odd(region, visit) && row_grid::walk(sorted_.view(), region, visit) &&
+               blocks_.traverse(region, visit);
+    }
+
+    [[nodiscard]] std::size_t bytes() const { return loose_.bytes() + sorted_.bytes() + blocks_.bytes(); }
+    [[nodiscard]] std::string broken_invariant() const;
+
+private:
+    BoxStore loose_;
+    RowSet sorted_;  // the ordinary ones of loose_
+    RowBlocks blocks_;
+};
+
+/// Calls ask(askers) for the records of a set from `begin` to `end`, some at a time, in the order in which they lie.
+template <class Ask> void for_askers(const RowView& set, std::size_t begin, std::size_t end, Ask&& ask) {
+    std::array<Move, 128> askers;
+    for (std::size_t i = begin; i < end;) {
+        std::size_t count = 0;
+        for (; count < askers.size() && i < end; ++i) {
+            askers[count] = {set.proxies[i], set.box(i)};
+            count += set.proxies[i] == killed ? 0 : 1;
+        }
+        ask(std::span<const Move>(askers.data(), count));
+    }
+}
+
+}  // namespace fase::broad
