@@ -1,6 +1,8 @@
 /// How cells of space are cut and given up.
 #include "fase/broad/block_planes.hpp"
 
+#include <algorithm>
+
 #include "fase/core/check.hpp"
 
 namespace fase::broad {
@@ -60,6 +62,24 @@ void BlockPlanes::remove(std::uint32_t cell) {
     link_to(node, gone.parent) = other;
     set_parent(other, gone.parent);
     free_.push_back(node);
+}
+
+void BlockPlanes::replace(std::uint32_t cell, std::uint32_t by) {
+    const std::uint32_t parent = parents_[cell];
+    link_to(cell | leaf, parent) = by | leaf;
+    set_parent(by | leaf, parent);
+}
+
+Aabb BlockPlanes::space_of(std::uint32_t cell) const {
+    Aabb space = Aabb::everything();
+    std::uint32_t node = cell | leaf;
+    for (std::uint32_t up = parents_[cell]; up != none; node = up, up = planes_[up].parent) {
+        const Plane& plane = planes_[up];
+        const bool below = plane.child[0] == node;
+        float& bound = below ? space.hi[plane.axis] : space.lo[plane.axis];
+        bound = below ? std::min(bound, plane.at) : std::max(bound, plane.at);
+    }
+    return space;
 }
 
 std::uint32_t BlockPlanes::sibling(std::uint32_t cell) const {

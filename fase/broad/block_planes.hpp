@@ -20,10 +20,14 @@ public:
     void begin(std::uint32_t cell);
     /// What lies at or beyond the plane becomes another cell. `at` is twice the coordinate, as middle() is.
     void cut(std::uint32_t cell, int axis, float at, std::uint32_t beyond);
+    /// Its space goes to another number.
+    void replace(std::uint32_t cell, std::uint32_t by);
     /// Its space goes to the neighbour behind the plane that cut it off.
     void remove(std::uint32_t cell);
     /// The cell on the other side of the plane that cut it off; none when that side has been cut again, or no plane.
     [[nodiscard]] std::uint32_t sibling(std::uint32_t cell) const;
+    /// Twice the bounds of the cell's space: where middle() of its boxes lies.
+    [[nodiscard]] Aabb space_of(std::uint32_t cell) const;
     void clear();
 
     /// There must be a cell.

@@ -216,3 +216,26 @@ std::size_t scan_touching_wide(const ColumnsView& boxes, std::size_t begin, std:
     }
     return count;
 }
+
+Aabb bounds_of_wide(const ColumnsView& boxes) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Aabb around;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        auto lo = hn::Set(d, around.lo[axis]), hi = hn::Set(d, around.hi[axis]);
+        std::size_t k = 0;
+        for (; k + lanes <= boxes.count; k += lanes) {
+            lo = hn::Min(lo, hn::LoadU(d, boxes.lo[a] + k));
+            hi = hn::Max(hi, hn::LoadU(d, boxes.hi[a] + k));
+        }
+        float least = hn::GetLane(hn::MinOfLanes(d, lo)), most = hn::GetLane(hn::MaxOfLanes(d, hi));
+        for (; k < boxes.count; ++k) {
+            least = std::min(least, boxes.lo[a][k]);
+            most = std::max(most, boxes.hi[a][k]);
+        }
+        around.lo[axis] = least;
+        around.hi[axis] = most;
+    }
+    return around;
+}

@@ -60,6 +60,7 @@ HWY_EXPORT(sweep_behind_wide);
 HWY_EXPORT(sweep_across_wide);
 HWY_EXPORT(scan_ranges_wide);
 HWY_EXPORT(scan_touching_wide);
+HWY_EXPORT(bounds_of_wide);
 
 void scan_behind(const ColumnsView& boxes, std::size_t begin, std::size_t end, std::vector<Pair>& out) {
     HWY_DYNAMIC_DISPATCH(scan_behind_wide)(boxes, begin, end, out);
@@ -79,6 +80,7 @@ std::size_t scan_touching(const ColumnsView& boxes, std::size_t begin, std::size
                           std::uint32_t* hits) {
     return HWY_DYNAMIC_DISPATCH(scan_touching_wide)(boxes, begin, end, box, hits);
 }
+Aabb bounds_of(const ColumnsView& boxes) { return HWY_DYNAMIC_DISPATCH(bounds_of_wide)(boxes); }
 
 }  // namespace fase::broad
 #endif

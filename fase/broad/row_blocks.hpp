@@ -1,5 +1,7 @@
 #pragma once
 /// Boxes that seldom change, in blocks of rows: a change costs what it changes, not what there is.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,15 +14,16 @@
 
 namespace fase::broad {
 
-/// Ordinary boxes by proxy. Planes share them out among blocks by their middles; boxes that are much larger than most
-/// have blocks of their own, so that the bounds of the others stay tight. A block is a sorted set of rows and a small
-/// one beside it for those that came later; a box that goes leaves an empty record. A block that has become worn (many
-/// empty records, many late ones) is sorted anew, and cut in two or joined with its neighbour where that is due: as
-/// much of it at a commit as the changes pay for, and one block more; the others wait.
-/// erase: O(1). commit: O(changes × log) in the mean, and never more than a fixed number of blocks beyond that.
+/// Ordinary boxes by proxy. A block is a sorted set of rows and a small one beside it for boxes that came later; a box
+/// that goes leaves an empty record. Many boxes that come at once, and then rest, are one block, whatever their number.
+/// A block that has become worn (many empty records, many late ones) is sorted anew. When it is larger than that
+/// should take, it is dissolved bit by bit into blocks of a bounded size, among which planes share out space; boxes
+/// that are much larger than most get blocks of their own then, so that the bounds of the others stay tight. As much of
+/// that is done at a commit as its changes pay for, and one block more; the rest waits.
+/// erase: O(1). commit: O(changes) sorting in the mean, and never more than a few blocks beyond that.
 class RowBlocks {
 public:
-    /// More boxes than that are cut into several blocks, unless all have one middle.
+    /// A worn block of more boxes is cut into several, unless all have one middle.
     static constexpr std::size_t block_most = 16384;
     static constexpr std::uint32_t none = 0xffffffff;
 
@@ -28,12 +31,17 @@ public:
     void commit(std::span<const Move> born, const RowGridSettings& settings);
     /// Of a proxy that it holds.
     void erase(Proxy p);
+    /// Takes over a sorted set, but for the records of `gone`; must be empty before. O(records), but fast.
+    void adopt(RowSet&& sorted, std::span<const Proxy> gone);
+    /// Appends all boxes, then forgets them.
+    void give_up(std::vector<Move>& out);
     void clear();
 
     [[nodiscard]] bool holds(Proxy p) const { return p < spots_.size() && spots_[p].set != none; }
     [[nodiscard]] Aabb box(Proxy p) const { return set(spots_[p].set).view().box(spots_[p].record); }
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] bool work_waits() const { return !worn_.empty(); }
+    /// Has commit() anything to do when no box comes?
+    [[nodiscard]] bool work_waits() const { return !gone_.empty() || !worn_.empty() || !dissolving_.empty(); }
 
     /// The sets, two a block; some are empty.
     [[nodiscard]] std::size_t sets() const { return 2 * blocks_.size(); }
@@ -56,18 +64,20 @@ public:
     [[nodiscard]] std::string broken_invariant() const;
 
 private:
+    static constexpr std::uint8_t dissolves = 2;
     struct Block {
         RowSet main, late;
         std::size_t late_work = 0;  // boxes that were sorted into `late` since `main` was made
         std::uint32_t coming = 0;   // of a commit under way: how many boxes, then where the next one goes
-        std::uint8_t planes = 0;
-        bool used = false, waits = false;
+        std::uint32_t going = 0;    // of a commit under way: how many records are to be emptied
+        std::uint8_t planes = 0;    // which of planes_ tell its boxes from others; or it dissolves
+        bool used = false, waits = false, is_heir = false;
 
         [[nodiscard]] std::size_t dead() const { return main.dead() + late.dead(); }
         [[nodiscard]] std::size_t live() const { return main.size() + late.size() - dead(); }
         /// Sorting it anew costs no more than what has been and will be lost by not doing so.
         [[nodiscard]] bool worn() const {
-            return late_work + 4 * late.size() + 8 * dead() >= live() + 256 || live() == 0;
+            return late_work + 4 * late.size() + 8 * dead() >= live() + 256 || (live() == 0 && !is_heir);
         }
     };
     struct Spot {
@@ -78,34 +88,45 @@ private:
     std::vector<Block> blocks_;
     std::vector<std::uint32_t> free_;  // of blocks_
     std::vector<std::uint32_t> worn_;  // those that wait
-    std::vector<Spot> spots_;          // by proxy
-    BoxColumns bounds_;                // of the sets; NaN when empty
-    std::size_t size_ = 0, erased_ = 0;
+    /// A block whose boxes go to others, which have its space already.
+    struct Dissolving {
+        std::uint32_t block = none;
+        std::vector<std::uint32_t> heirs;  // that have not got their boxes yet
+    };
+    std::vector<Dissolving> dissolving_;
+    std::vector<Spot> spots_;  // by proxy
+    std::vector<Spot> gone_;   // records to be emptied at commit
+    BoxColumns bounds_;        // of the sets; NaN when empty
+    std::size_t size_ = 0;
 
     // Scratch of commit(), kept for its memory.
-    /// Boxes in the order of the blocks that they belong to.
-    struct Grouping {
-        std::vector<std::uint32_t> homes, touched;  // by box; each once
-        std::vector<Move> scratch;
-        std::span<const Move> boxes;  // those of touched[0] first: as many as it has coming
-    };
-    Grouping born_, pieces_;
-    std::vector<Move> gathered_;
-    std::vector<Vec3> sample_;
+    std::vector<Move> gathered_, grouped_;
+    std::vector<std::uint32_t> homes_, touched_;
 
     template <class F> bool for_each_set_near(const Aabb& box, F&& visit) const;
+    [[nodiscard]] RowSet& set_at(std::uint32_t k) { return k % 2 == 0 ? blocks_[k / 2].main : blocks_[k / 2].late; }
+    [[nodiscard]] static float longest_side(const Aabb& box) {
+        const Vec3 e = extent(box);
+        return std::max(e.x, std::max(e.y, e.z));
+    }
+    [[nodiscard]] static Aabb within(const Aabb& bounds, const Aabb& space, const RowView& set);
+    void append_boxes(std::uint32_t b, std::vector<Move>& out) const;
     std::uint32_t new_block(std::uint8_t planes);
     void drop_block(std::uint32_t b);
-    void group(std::span<const Move> boxes, Grouping& grouping);
+    void empty_records();
+    void look_at(std::uint32_t b);
+    std::span<const Move> group(std::span<const Move> boxes);
     void take_in(std::span<const Move> boxes, const RowGridSettings& settings);
     void add(std::uint32_t b, std::span<const Move> boxes, const RowGridSettings& settings);
     void remake(std::uint32_t b, std::span<const Move> more, const RowGridSettings& settings);
-    void mend(std::uint32_t b, const RowGridSettings& settings);
-    void choose_large(std::span<const Move> boxes);
-    void cut_cell(std::uint32_t b, std::span<Vec3> sample, std::size_t pieces);
     void build(std::uint32_t b, std::span<const Move> boxes, const RowGridSettings& settings);
     void settle(std::uint32_t k);
-    void look_at(std::uint32_t b);
+    /// One step of work on the worn block that has waited longest; returns how many boxes it took.
+    std::size_t mend(const RowGridSettings& settings);
+    std::size_t mend(std::uint32_t b, const RowGridSettings& settings);
+    bool begin_to_dissolve(std::uint32_t b, const RowGridSettings& settings);
+    std::size_t dissolve(const RowGridSettings& settings);
+    void cut_cell(std::uint32_t b, std::span<Vec3> sample, std::size_t pieces, std::vector<std::uint32_t>& cells);
 };
 
 template <class F> bool RowBlocks::for_each_set_near(const Aabb& box, F&& visit) const {
