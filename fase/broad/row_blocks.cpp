@@ -61,29 +61,30 @@ void RowBlocks::empty_records() {
 
 void RowBlocks::commit(std::span<const Move> born, const RowGridSettings& settings) {
     if (born.empty() && !work_waits()) return;
-    std::size_t paid = block_most + 8 * (born.size() + gone_.size());
+    std::size_t paid = std::max(block_most, 8 * (born.size() + gone_.size()));
     if (!gone_.empty()) empty_records();
     if (!born.empty()) {
         Proxy largest = 0;
         for (const Move& m : born) largest = std::max(largest, m.proxy);
-        if (largest >= spots_.size()) spots_.resize(largest + std::size_t{1});
+        spots_.grow_to(largest + std::size_t{1});
         size_ += born.size();
         take_in(born, settings);
     }
-    while (paid > 0 && (!worn_.empty() || !dissolving_.empty())) paid -= std::min(paid, mend(settings) + 256);
+    while (paid > block_most / 2 && (!worn_.empty() || !dissolving_.empty()))
+        paid -= std::min(paid, mend(settings) + 256);
     for (std::vector<Move>* scratch : {&gathered_, &grouped_}) keep_small(*scratch);
     keep_small(homes_);
 }
 
 void RowBlocks::adopt(RowSet&& sorted, std::span<const Proxy> gone) {
     clear();
-    if (sorted.size() == gone.size()) return;
+    if (sorted.size() == 0) return;
     const std::uint32_t b = new_block(0);
     planes_[0].begin(b);
     blocks_[b].main = std::move(sorted);
     const RowView view = blocks_[b].main.view();
     size_ = view.count;
-    spots_.resize(*std::max_element(view.proxies, view.proxies + view.count) + std::size_t{1});
+    spots_.grow_to(*std::max_element(view.proxies, view.proxies + view.count) + std::size_t{1});
     settle(2 * b);
     for (const Proxy p : gone)
         if (holds(p)) erase(p);
@@ -213,7 +214,7 @@ void RowBlocks::settle(std::uint32_t k) {
 
 std::size_t RowBlocks::bytes() const {
     std::size_t sum =
-        (spots_.capacity() + gone_.capacity()) * sizeof(Spot) + blocks_.capacity() * sizeof(Block) + bounds_.bytes();
+        spots_.bytes() + gone_.capacity() * sizeof(Spot) + blocks_.capacity() * sizeof(Block) + bounds_.bytes();
     for (const Block& block : blocks_) sum += block.main.bytes() + block.late.bytes();
     for (const BlockPlanes& planes : planes_) sum += planes.bytes();
     return sum + (gathered_.capacity() + grouped_.capacity()) * sizeof(Move) +
@@ -251,7 +252,7 @@ std::string RowBlocks::broken_invariant() const {
             }
         }
     }
-    for (const Spot& spot : spots_) spots += spot.set != none ? 1 : 0;
+    for (std::size_t p = 0; p < spots_.size(); ++p) spots += spots_[p].set != none ? 1 : 0;
     if (live != size_ || spots != size_) return "the boxes are miscounted";
     for (std::size_t k = 0; k < 2; ++k)
         if (std::string broken = planes_[k].broken_invariant(cells[k]); !broken.empty()) return broken;

@@ -9,6 +9,7 @@
 
 #include "fase/broad/block_planes.hpp"
 #include "fase/broad/box_scan.hpp"
+#include "fase/broad/paged_array.hpp"
 #include "fase/broad/row_grid_kernels.hpp"
 #include "fase/broad/row_grid_walk.hpp"
 
@@ -24,7 +25,7 @@ namespace fase::broad {
 class RowBlocks {
 public:
     /// A worn block of more boxes is cut into several, unless all have one middle.
-    static constexpr std::size_t block_most = 16384;
+    static constexpr std::size_t block_most = 8192;
     static constexpr std::uint32_t none = 0xffffffff;
 
     /// Takes in boxes, none of which it holds, and does some of the work that waits.
@@ -38,7 +39,7 @@ public:
     void clear();
 
     [[nodiscard]] bool holds(Proxy p) const { return p < spots_.size() && spots_[p].set != none; }
-    [[nodiscard]] Aabb box(Proxy p) const { return set(spots_[p].set).view().box(spots_[p].record); }
+    [[nodiscard]] Aabb box(Proxy p) const { return set(spots_[p].set).box(spots_[p].record); }
     [[nodiscard]] std::size_t size() const { return size_; }
     /// Has commit() anything to do when no box comes?
     [[nodiscard]] bool work_waits() const { return !gone_.empty() || !worn_.empty() || !dissolving_.empty(); }
@@ -48,6 +49,7 @@ public:
     [[nodiscard]] const RowSet& set(std::size_t k) const {
         return k % 2 == 0 ? blocks_[k / 2].main : blocks_[k / 2].late;
     }
+    [[nodiscard]] bool is_one_set() const { return blocks_.size() == 1 && blocks_[0].late.size() == 0; }
     /// The pairs of askers with all boxes or, when `after` names a set, with those of the sets that come after it: of
     /// two sets the smaller one comes first.
     void find_asked_pairs(const row_grid::Askers& askers, std::uint32_t after, row_grid::PairBlock& out) const;
@@ -94,9 +96,9 @@ private:
         std::vector<std::uint32_t> heirs;  // that have not got their boxes yet
     };
     std::vector<Dissolving> dissolving_;
-    std::vector<Spot> spots_;  // by proxy
-    std::vector<Spot> gone_;   // records to be emptied at commit
-    BoxColumns bounds_;        // of the sets; NaN when empty
+    PagedArray<Spot> spots_;  // by proxy
+    std::vector<Spot> gone_;  // records to be emptied at commit
+    BoxColumns bounds_;       // of the sets; NaN when empty
     std::size_t size_ = 0;
 
     // Scratch of commit(), kept for its memory.

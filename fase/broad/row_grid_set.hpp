@@ -125,6 +125,10 @@ public:
     void kill(std::size_t record);
 
     [[nodiscard]] RowView view() const;
+    /// Of a record that is not killed.
+    [[nodiscard]] Aabb box(std::size_t i) const {
+        return {{columns_[0][i], columns_[1][i], columns_[2][i]}, {columns_[3][i], columns_[4][i], columns_[5][i]}};
+    }
     /// Records, the killed ones too.
     [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] std::size_t dead() const { return dead_; }

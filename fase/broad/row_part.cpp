@@ -1,16 +1,95 @@
-/// When boxes are sorted, and which sets of a population ask which.
+/// When boxes are sorted, when they go into blocks, and which sets of a population ask which.
 #include "fase/broad/row_part.hpp"
 
 namespace fase::broad {
+namespace {
 
-void RowPart::clear() {
-    loose_.clear();
-    blocks_.clear();
+constexpr std::size_t many = RowBlocks::block_most;  // fewer are sorted faster than looked after
+constexpr std::size_t few_share = 16;                // one in so many is few
+constexpr std::size_t most_settle = 4096;            // in one commit
+
+}  // namespace
+
+void RowPart::clear() { *this = {}; }
+
+void RowPart::note(Proxy p) {
+    changed_.push_back(p);
+    watches_ = changed_.size() <= std::max(loose_.size() / few_share, many / few_share);
+}
+
+void RowPart::move_apart(Proxy p, const Aabb& box) {
+    if (loose_.holds(p)) {
+        loose_.move(p, box);
+        loose_.set_awake(p, true);
+    } else {
+        blocks_.erase(p);
+        loose_.insert(p, box);
+    }
 }
 
 void RowPart::commit(const RowGridSettings& settings) {
-    if (loose_.take_changed()) sorted_.build(loose_.ordinary(), settings);
+    const bool changed = loose_.take_changed();
+    if (blocks_.size() > 0 || blocks_.work_waits()) {
+        if (loose_.size() > blocks_.size()) {
+            join();
+        } else {
+            settle_calm(settings);
+            if (++age_ >= calm_after) look_for_calm();
+        }
+    } else if (changed && watches_ && loose_.size() >= many && changed_.size() * few_share <= loose_.size()) {
+        part(settings);
+    }
+    // What went into blocks has left the loose ones changed: that is settled here.
+    if (loose_.take_changed() || changed) sorted_.build(loose_.ordinary(), settings);
+    watches_ = blocks_.size() == 0 && loose_.size() >= many && moves_ * few_share <= loose_.size();
+    moves_ = 0;
+    changed_.clear();
+}
+
+/// What has not changed since it was sorted becomes a block.
+void RowPart::part(const RowGridSettings& settings) {
+    blocks_.adopt(std::move(sorted_), changed_);
     blocks_.commit({}, settings);
+    sorted_ = {};
+    BoxStore rest;
+    const auto keep = [&](Proxy p) {
+        if (loose_.holds(p) && !rest.holds(p)) rest.insert(p, loose_.box(p));
+    };
+    for (const Proxy p : changed_) keep(p);
+    for (const Move& m : loose_.odd()) keep(m.proxy);
+    loose_ = std::move(rest);
+    age_ = 0;
+    calm_.clear();
+}
+
+/// All boxes are loose again.
+void RowPart::join() {
+    settling_.clear();
+    blocks_.give_up(settling_);
+    for (const Move& m : settling_) loose_.insert(m.proxy, m.box);
+    settling_ = {};
+    calm_.clear();
+}
+
+void RowPart::look_for_calm() {
+    age_ = 0;
+    calm_.clear();
+    for (const Move& m : loose_.ordinary()) {
+        if (!loose_.is_awake(m.proxy)) calm_.push_back(m.proxy);
+        loose_.set_awake(m.proxy, false);
+    }
+}
+
+void RowPart::settle_calm(const RowGridSettings& settings) {
+    settling_.clear();
+    while (!calm_.empty() && settling_.size() < most_settle) {
+        const Proxy p = calm_.back();
+        calm_.pop_back();
+        if (!loose_.holds(p) || loose_.is_awake(p) || loose_.is_odd(p)) continue;  // it has changed since then
+        settling_.push_back({p, loose_.box(p)});
+        loose_.erase(p);
+    }
+    blocks_.commit(settling_, settings);
 }
 
 void RowPart::settle(const RowGridSettings& settings) {
@@ -24,11 +103,16 @@ void RowPart::find_own_pairs(std::size_t k, std::size_t begin, std::size_t end, 
     row_grid::find_own_pairs(mine, begin, end, out);
     if (blocks_.size() == 0) return;
     const bool loose_ask = sorted_.size() <= blocks_.size();
-    if (k == 0 && !loose_ask) return;
+    if (k == 0 ? !loose_ask : loose_ask && blocks_.is_one_set()) return;
     for_askers(mine, begin, end, [&](std::span<const Move> askers) {
         if (k > 0 && !loose_ask) row_grid::find_asked_pairs(sorted_.view(), {askers, {}}, out);
         blocks_.find_asked_pairs({askers, {}}, k == 0 ? RowBlocks::none : static_cast<std::uint32_t>(k - 1), out);
     });
+}
+
+std::size_t RowPart::bytes() const {
+    return loose_.bytes() + sorted_.bytes() + blocks_.bytes() + settling_.capacity() * sizeof(Move) +
+           (changed_.capacity() + calm_.capacity()) * sizeof(Proxy);
 }
 
 std::string RowPart::broken_invariant() const {

@@ -9,26 +9,37 @@
 
 namespace fase::broad {
 
-/// Each box is loose or in a block. New boxes and those that move are loose; commit() sorts all that are loose, and
-/// settle() puts them into blocks first. Odd boxes are loose, and in no sorted set.
+/// Each box is loose or in a block. Loose boxes are sorted anew by each commit() that finds one of them changed: the
+/// way for boxes of which most move. When few of many do, all that did not move become a block as they are sorted; from
+/// then on those that move leave it, and loose ones that have not moved for some commits go back. When half of them
+/// are loose again, all are. Odd boxes are always loose, and in no sorted set.
 class RowPart {
 public:
-    void insert(Proxy p, const Aabb& box) { loose_.insert(p, box); }
-    void move(Proxy p, const Aabb& box) {
-        if (loose_.holds(p)) return loose_.move(p, box);
-        blocks_.erase(p);
+    void insert(Proxy p, const Aabb& box) {
         loose_.insert(p, box);
+        if (watches_) note(p);
     }
-    void erase(Proxy p) { loose_.holds(p) ? loose_.erase(p) : blocks_.erase(p); }
+    void move(Proxy p, const Aabb& box) {
+        ++moves_;
+        if (watches_) note(p);
+        if (blocks_.size() > 0) return move_apart(p, box);
+        loose_.move(p, box);
+    }
+    void erase(Proxy p) {
+        if (watches_) note(p);
+        loose_.holds(p) ? loose_.erase(p) : blocks_.erase(p);
+    }
     void clear();
     void reserve(std::span<const Move> boxes) { loose_.reserve(boxes); }
     void commit(const RowGridSettings& settings);
-    /// commit() for boxes that are likely to stay where they are.
+    /// commit() for boxes that are likely to stay where they are: all ordinary ones go into blocks at once.
     void settle(const RowGridSettings& settings);
 
     [[nodiscard]] bool holds(Proxy p) const { return loose_.holds(p) || blocks_.holds(p); }
     [[nodiscard]] Aabb box(Proxy p) const { return loose_.holds(p) ? loose_.box(p) : blocks_.box(p); }
     [[nodiscard]] std::size_t size() const { return loose_.size() + blocks_.size(); }
+    /// How many stand in blocks.
+    [[nodiscard]] std::size_t settled() const { return blocks_.size(); }
     [[nodiscard]] std::span<const Move> odd() const { return loose_.odd(); }
 
     /// The sorted sets: of the loose boxes, then those of the blocks.
@@ -48,13 +59,27 @@ public:
                blocks_.traverse(region, visit);
     }
 
-    [[nodiscard]] std::size_t bytes() const { return loose_.bytes() + sorted_.bytes() + blocks_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] std::string broken_invariant() const;
 
 private:
-    BoxStore loose_;
-    RowSet sorted_;  // the ordinary ones of loose_
+    static constexpr std::uint32_t calm_after = 8;  // commits without a move
+    BoxStore loose_;                                // "awake": has moved since the last look at all
+    RowSet sorted_;                                 // the ordinary ones of loose_
     RowBlocks blocks_;
+    bool watches_ = false;        // notes what changes: at the last commit, few did
+    std::vector<Proxy> changed_;  // noted since then
+    std::size_t moves_ = 0;       // since the last commit
+    std::uint32_t age_ = 0;       // commits since the last look
+    std::vector<Proxy> calm_;     // loose ones that are to go into blocks
+    std::vector<Move> settling_;  // scratch
+
+    void note(Proxy p);
+    void move_apart(Proxy p, const Aabb& box);
+    void part(const RowGridSettings& settings);
+    void join();
+    void look_for_calm();
+    void settle_calm(const RowGridSettings& settings);
 };
 
 /// Calls ask(askers) for the records of a set from `begin` to `end`, some at a time, in the order in which they lie.
