@@ -48,6 +48,22 @@ void AnyStructure::move(std::span<const Move> boxes) {
         structure_);
 }
 
+void AnyStructure::insert(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+    std::visit(
+        [&](auto& s) {
+            for (const Proxy p : proxies) s.insert(p, by_proxy[p]);
+        },
+        structure_);
+}
+
+void AnyStructure::move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+    std::visit(
+        [&](auto& s) {
+            for (const Proxy p : proxies) s.move(p, by_proxy[p]);
+        },
+        structure_);
+}
+
 void AnyStructure::erase(std::span<const Proxy> proxies) {
     std::visit(
         [&](auto& s) {
@@ -128,6 +144,15 @@ void AnyStructure::find_pairs_of(std::span<const Move> askers, std::span<const s
 void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> askers,
                                  std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) const {
     std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, askers, is_asker, out); }, structure_);
+}
+
+void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const {
+    if (size() == 0 || other.size() == 0) return;
+    if (tasks.threads() == 1) return find_pairs_between(other, out);
+    const bool asks = size() < other.size();
+    std::vector<Move> askers;
+    std::visit([&](const auto& s) { stored_boxes(s, askers); }, asks ? structure_ : other.structure_);
+    (asks ? other : *this).find_pairs_of(tasks, askers, {}, out);
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {

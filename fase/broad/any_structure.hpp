@@ -30,6 +30,9 @@ public:
 
     void insert(std::span<const Move> boxes);
     void move(std::span<const Move> boxes);
+    /// The same for boxes that stand in a list by proxy.
+    void insert(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
+    void move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
     void erase(std::span<const Proxy> proxies);
     void set_awake(std::span<const Proxy> proxies, bool awake);
     void clear();
@@ -56,6 +59,8 @@ public:
     /// Appends each pair of a box stored here and one stored in `other` (which may be of another kind); cheapest for
     /// two trees of one kind. Proxies of both count as one numbering.
     void find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const;
+    /// The same pairs; several threads share out the boxes of the one that has fewer.
+    void find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const;
     /// Appends the proxies of the stored boxes that overlap `box`, in the structure's own order.
     void overlapping(const Aabb& box, std::vector<Proxy>& out) const;
     /// As Structure::traverse: `visit(proxy, box)` returns false to stop. Compiled once for these regions: an indirect

@@ -115,6 +115,7 @@ public:
     template <class Add> void odd_pairs(bool awake_only, Add&& add) const {
         for (std::size_t i = 0; i < odd_.size(); ++i) {
             const Move mine = odd_[i];
+            if (!overlaps(mine.box, Aabb::everything())) continue;  // a NaN: nothing meets it
             const auto test = [&](const Move& other) {
                 if (!overlaps(mine.box, other.box)) return;
                 if (awake_only && !is_awake(mine.proxy) && !is_awake(other.proxy)) return;

@@ -2,35 +2,35 @@
 #include "fase/broad/pair_finder.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <cstring>
 
 #include "fase/core/check.hpp"
 
 namespace fase::broad {
 namespace {
 
-/// Pairs of the boxes of two structures that share no box. One thread leaves it to the structures, which may walk
-/// through both at once; several share out the boxes of the smaller one.
-void append_pairs_between(TaskRunner& tasks, const AnyStructure& a, std::span<const Move> in_a, const AnyStructure& b,
-                          std::span<const Move> in_b, std::vector<Pair>& out) {
-    if (in_a.empty() || in_b.empty()) return;
-    if (tasks.threads() == 1) {
-        a.find_pairs_between(b, out);
-    } else if (in_a.size() < in_b.size()) {
-        b.find_pairs_of(tasks, in_a, {}, out);
-    } else {
-        a.find_pairs_of(tasks, in_b, {}, out);
+/// Appends the places at which the boxes are others than before, bit by bit, in order; `before` is as they are then.
+void take_changed(std::span<const Aabb> boxes, std::span<Aabb> before, std::vector<Proxy>& changed) {
+    static_assert(sizeof(Aabb) == 24);
+    const auto word = [](const Aabb& box, int k) {
+        std::uint64_t bits;
+        std::memcpy(&bits, reinterpret_cast<const char*>(&box) + 8 * k, 8);
+        return bits;
+    };
+    changed.resize(boxes.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Aabb &old = before[i], &now = boxes[i];
+        const std::uint64_t differing =
+            (word(old, 0) ^ word(now, 0)) | (word(old, 1) ^ word(now, 1)) | (word(old, 2) ^ word(now, 2));
+        changed[count] = static_cast<Proxy>(i);
+        count += differing != 0 ? 1 : 0;
     }
-}
-
-/// Puts into `changed` those of the row that have another box now, and gives them that box.
-void take_changed(std::vector<Move>& row, std::span<const Aabb> boxes, std::vector<Move>& changed) {
-    changed.clear();
-    for (Move& m : row) {
-        const Aabb& box = boxes[m.proxy];
-        if (m.box == box) continue;
-        m.box = box;
-        changed.push_back(m);
+    changed.resize(count);
+    if (2 * count > boxes.size()) {
+        std::copy(boxes.begin(), boxes.end(), before.begin());
+    } else {
+        for (const Proxy p : changed) before[p] = boxes[p];
     }
 }
 
@@ -38,38 +38,47 @@ void take_changed(std::vector<Move>& row, std::span<const Aabb> boxes, std::vect
 
 void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations) {
     FASE_ASSERT(boxes.size() == populations.size());
-    for (std::vector<Move>* row : {&awake_row_, &asleep_row_, &static_row_}) row->clear();
+    boxes_.assign(boxes.begin(), boxes.end());
     populations_.assign(populations.begin(), populations.end());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        std::vector<Move>& row = populations[i] == Population::Static   ? static_row_
-                                 : populations[i] == Population::Asleep ? asleep_row_
-                                                                        : awake_row_;
-        row.push_back({static_cast<Proxy>(i), boxes[i]});
-    }
-    for (const auto& [structure, row] :
-         {std::pair{&awake_, &awake_row_}, std::pair{&asleep_, &asleep_row_}, std::pair{&static_, &static_row_}}) {
+    std::vector<Move> row;
+    for (const Population population : {Population::Awake, Population::Asleep, Population::Static}) {
+        row.clear();
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            if (populations[i] == population) row.push_back({static_cast<Proxy>(i), boxes[i]});
+        AnyStructure& structure = structure_of(*this, population);
         if (automatic_) {
-            structure->clear();
-            structure->become(*AnyStructure::named(suited_structure({row->size(), 1}, {}).structure));
+            structure.clear();
+            structure.become(*AnyStructure::named(suited_structure({row.size(), 1}, {}).structure));
         }
-        structure->build(*row);
+        structure.build(row);
     }
     if (automatic_) suit_all(true);
     updates_ = 0;
     resting_.clear();
     asleep_.find_pairs(tasks, resting_);
-    append_pairs_between(tasks, asleep_, asleep_row_, static_, static_row_, resting_);
+    asleep_.find_pairs_between(tasks, static_, resting_);
 }
 
 void PairFinder::update(std::span<const Aabb> boxes) {
     FASE_ASSERT(boxes.size() == populations_.size());
-    take_changed(awake_row_, boxes, changed_);
-    awake_.move(changed_);
-    wake_changed(boxes);
+    take_changed(boxes, boxes_, changed_);
+    if (awake_.size() == boxes.size()) {
+        awake_.move(changed_, boxes_);
+    } else {
+        auto& [awake, woken, fixed] = changed_of_;
+        for (std::vector<Proxy>* list : {&awake, &woken, &fixed}) list->clear();
+        for (const Proxy p : changed_)
+            (populations_[p] == Population::Static   ? fixed
+             : populations_[p] == Population::Asleep ? woken
+                                                     : awake)
+                .push_back(p);
+        awake_.move(awake, boxes_);
+        if (!woken.empty()) wake(woken);
+        if (!fixed.empty()) move_static(fixed);
+    }
     constexpr std::uint32_t looks_again = 32;
     if (automatic_) suit_all(++updates_ % looks_again == 0);
     awake_.commit();
-    move_static(boxes);
 }
 
 void PairFinder::suit_all(bool looks_closely) {
@@ -77,49 +86,28 @@ void PairFinder::suit_all(bool looks_closely) {
 }
 
 SuitedStructure PairFinder::chosen(Population population) const {
-    const AnyStructure& structure = population == Population::Static   ? static_
-                                    : population == Population::Asleep ? asleep_
-                                                                       : awake_;
+    const AnyStructure& structure = structure_of(*this, population);
     const std::string_view name = structure.info().name;
     if (!automatic_) return {name, {}};
     return {name, suited_structure({structure.size(), 1}, name).reason};
 }
 
-void PairFinder::wake_changed(std::span<const Aabb> boxes) {
-    changed_.clear();
-    changed_proxies_.clear();
-    std::size_t kept = 0;
-    for (const Move& m : asleep_row_) {
-        const Aabb& box = boxes[m.proxy];
-        if (m.box == box) {
-            asleep_row_[kept++] = m;
-            continue;
-        }
-        changed_.push_back({m.proxy, box});
-        changed_proxies_.push_back(m.proxy);
-        populations_[m.proxy] = Population::Awake;
-    }
-    if (changed_.empty()) return;
-    asleep_row_.resize(kept);
-    awake_row_.insert(awake_row_.end(), changed_.begin(), changed_.end());
-    asleep_.erase(changed_proxies_);
+void PairFinder::wake(std::span<const Proxy> proxies) {
+    for (const Proxy p : proxies) populations_[p] = Population::Awake;
+    asleep_.erase(proxies);
     asleep_.commit();
-    awake_.insert(changed_);
+    awake_.insert(proxies, boxes_);
     drop_resting([this](Proxy p) { return populations_[p] == Population::Awake; });
 }
 
-void PairFinder::move_static(std::span<const Aabb> boxes) {
-    take_changed(static_row_, boxes, changed_);
-    if (changed_.empty()) return;
-    static_.move(changed_);
+void PairFinder::move_static(std::span<const Proxy> proxies) {
+    static_.move(proxies, boxes_);
     static_.commit();
-    if (asleep_row_.empty()) return;
-    drop_resting([this](Proxy p) {  // changed_ is in the order of the row, which is ascending
-        const auto less = [](const Move& m, Proxy q) { return m.proxy < q; };
-        const auto at = std::lower_bound(changed_.begin(), changed_.end(), p, less);
-        return at != changed_.end() && at->proxy == p;
-    });
-    asleep_.find_pairs_of(changed_, resting_);
+    if (asleep_.size() == 0) return;
+    drop_resting([&](Proxy p) { return std::binary_search(proxies.begin(), proxies.end(), p); });
+    std::vector<Move> askers;
+    for (const Proxy p : proxies) askers.push_back({p, boxes_[p]});
+    asleep_.find_pairs_of(askers, resting_);
 }
 
 template <class F> void PairFinder::drop_resting(const F& goes) {
@@ -134,18 +122,20 @@ void PairFinder::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
 
 void PairFinder::find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     awake_.find_pairs(tasks, out);
-    append_pairs_between(tasks, awake_, awake_row_, asleep_, asleep_row_, out);
-    append_pairs_between(tasks, awake_, awake_row_, static_, static_row_, out);
+    awake_.find_pairs_between(tasks, asleep_, out);
+    awake_.find_pairs_between(tasks, static_, out);
 }
 
 std::string PairFinder::broken_invariant() const {
-    for (const auto& [structure, row, name] : {std::tuple{&awake_, &awake_row_, "awake: "},
-                                               {&asleep_, &asleep_row_, "asleep: "},
-                                               {&static_, &static_row_, "static: "}}) {
-        if (structure->size() != row->size()) return std::string(name) + "the structure has another number of boxes";
-        if (const std::string broken = structure->broken_invariant(); !broken.empty()) return name + broken;
+    for (const auto& [population, name] : {std::pair{Population::Awake, "awake: "},
+                                           {Population::Asleep, "asleep: "},
+                                           {Population::Static, "static: "}}) {
+        const AnyStructure& structure = structure_of(*this, population);
+        const auto here = std::count(populations_.begin(), populations_.end(), population);
+        if (structure.size() != static_cast<std::size_t>(here))
+            return std::string(name) + "the structure has another number of boxes";
+        if (const std::string broken = structure.broken_invariant(); !broken.empty()) return name + broken;
     }
-    if (awake_row_.size() + asleep_row_.size() + static_row_.size() != populations_.size()) return "a box is lost";
     for (const Pair pair : resting_)
         if (population(pair.a) == Population::Awake || population(pair.b) == Population::Awake)
             return "an awake box is in a resting pair";

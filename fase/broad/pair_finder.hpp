@@ -31,7 +31,8 @@ public:
 
     /// Replaces all boxes, and finds the pairs of those that rest. `populations` is as long as `boxes`.
     void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
-    /// Takes the boxes of the next frame, as many as build() had. Only those that changed cost more than a comparison.
+    /// Takes the boxes of the next frame, as many as build() had. Only those that changed
+    /// cost more than a comparison.
     void update(std::span<const Aabb> boxes);
     /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
@@ -52,17 +53,24 @@ public:
 
 private:
     AnyStructure awake_, asleep_, static_;
-    std::vector<Move> awake_row_, asleep_row_, static_row_;  // what stands in them
-    std::vector<Population> populations_;                    // by place
+    std::vector<Aabb> boxes_;              // by place
+    std::vector<Population> populations_;  // by place
     std::vector<Pair> resting_;
     bool automatic_ = false;
     std::uint32_t updates_ = 0;
-    std::vector<Move> changed_;           // of one update
-    std::vector<Proxy> changed_proxies_;  // of the same
+    std::vector<Proxy> changed_;  // of one update
+    struct Changed {
+        std::vector<Proxy> awake, woken, fixed;
+    } changed_of_;  // the same by population
 
+    template <class Self> [[nodiscard]] static auto& structure_of(Self& self, Population population) {
+        return population == Population::Static   ? self.static_
+               : population == Population::Asleep ? self.asleep_
+                                                  : self.awake_;
+    }
     void suit_all(bool looks_closely);
-    void wake_changed(std::span<const Aabb> boxes);
-    void move_static(std::span<const Aabb> boxes);
+    void wake(std::span<const Proxy> proxies);
+    void move_static(std::span<const Proxy> proxies);
     /// Drops the resting pairs for which `goes(proxy)` holds for either.
     template <class F> void drop_resting(const F& goes);
 };
