@@ -29,7 +29,9 @@ public:
     explicit RowGrid(const Settings& settings) : settings_(settings) {}
 
     void insert(Proxy p, const Aabb& box) { moving_.insert(p, box); }
-    void move(Proxy p, const Aabb& box) { part_of(p).move(p, box); }
+    void move(Proxy p, const Aabb& box) {
+        if (!moving_.moves_at_once(p, box)) part_of(p).move(p, box);
+    }
     void erase(Proxy p) { part_of(p).erase(p); }
     void set_awake(Proxy p, bool awake);
     [[nodiscard]] bool is_awake(Proxy p) const { return moving_.holds(p); }

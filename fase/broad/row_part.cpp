@@ -14,13 +14,17 @@ void RowPart::clear() { *this = {}; }
 
 void RowPart::note(Proxy p) {
     changed_.push_back(p);
-    watches_ = changed_.size() <= std::max(loose_.size() / few_share, many / few_share);
+    if (changed_.size() * few_share <= loose_.size()) return;
+    watches_ = false;
+    only_sorts_ = blocks_.size() == 0;
+    next_watch_ = watch_every;
 }
 
-void RowPart::move_apart(Proxy p, const Aabb& box) {
+void RowPart::move(Proxy p, const Aabb& box) {
+    if (watches_) note(p);
     if (loose_.holds(p)) {
         loose_.move(p, box);
-        loose_.set_awake(p, true);
+        if (blocks_.size() > 0) loose_.set_awake(p, true);
     } else {
         blocks_.erase(p);
         loose_.insert(p, box);
@@ -36,13 +40,14 @@ void RowPart::commit(const RowGridSettings& settings) {
             settle_calm(settings);
             if (++age_ >= calm_after) look_for_calm();
         }
-    } else if (changed && watches_ && loose_.size() >= many && changed_.size() * few_share <= loose_.size()) {
+    } else if (changed && watches_) {
         part(settings);
     }
     // What went into blocks has left the loose ones changed: that is settled here.
     if (loose_.take_changed() || changed) sorted_.build(loose_.ordinary(), settings);
-    watches_ = blocks_.size() == 0 && loose_.size() >= many && moves_ * few_share <= loose_.size();
-    moves_ = 0;
+    next_watch_ -= next_watch_ > 0 ? 1 : 0;
+    watches_ = next_watch_ == 0 && blocks_.size() == 0 && loose_.size() >= many;
+    only_sorts_ = !watches_ && blocks_.size() == 0;
     changed_.clear();
 }
 
@@ -93,6 +98,7 @@ void RowPart::settle_calm(const RowGridSettings& settings) {
 }
 
 void RowPart::settle(const RowGridSettings& settings) {
+    only_sorts_ = false;
     if (!loose_.take_changed()) return blocks_.commit({}, settings);
     blocks_.commit(loose_.ordinary(), settings);
     loose_.drop_ordinary();

@@ -19,11 +19,12 @@ public:
         loose_.insert(p, box);
         if (watches_) note(p);
     }
-    void move(Proxy p, const Aabb& box) {
-        ++moves_;
-        if (watches_) note(p);
-        if (blocks_.size() > 0) return move_apart(p, box);
+    void move(Proxy p, const Aabb& box);
+    /// move(), when it is here and nothing has to be done but that; else false.
+    bool moves_at_once(Proxy p, const Aabb& box) {
+        if (!only_sorts_ || !loose_.holds(p)) return false;
         loose_.move(p, box);
+        return true;
     }
     void erase(Proxy p) {
         if (watches_) note(p);
@@ -63,19 +64,20 @@ public:
     [[nodiscard]] std::string broken_invariant() const;
 
 private:
-    static constexpr std::uint32_t calm_after = 8;  // commits without a move
-    BoxStore loose_;                                // "awake": has moved since the last look at all
-    RowSet sorted_;                                 // the ordinary ones of loose_
+    static constexpr std::uint32_t calm_after = 8;   // commits without a move
+    static constexpr std::uint32_t watch_every = 8;  // commits, where much changes
+    BoxStore loose_;                                 // "awake": has moved since the last look at all
+    RowSet sorted_;                                  // the ordinary ones of loose_
     RowBlocks blocks_;
-    bool watches_ = false;        // notes what changes: at the last commit, few did
-    std::vector<Proxy> changed_;  // noted since then
-    std::size_t moves_ = 0;       // since the last commit
-    std::uint32_t age_ = 0;       // commits since the last look
-    std::vector<Proxy> calm_;     // loose ones that are to go into blocks
-    std::vector<Move> settling_;  // scratch
+    bool only_sorts_ = true;        // no blocks, and nobody watches
+    bool watches_ = false;          // notes what changes after a commit, until it is too much
+    std::vector<Proxy> changed_;    // noted
+    std::uint32_t next_watch_ = 0;  // commits until then
+    std::uint32_t age_ = 0;         // commits since the last look at what is calm
+    std::vector<Proxy> calm_;       // loose ones that are to go into blocks
+    std::vector<Move> settling_;    // scratch
 
     void note(Proxy p);
-    void move_apart(Proxy p, const Aabb& box);
     void part(const RowGridSettings& settings);
     void join();
     void look_for_calm();
