@@ -116,6 +116,16 @@ void AnyStructure::become(AnyStructure other) {
     structure_ = std::move(other.structure_);
 }
 
+void AnyStructure::build_still(std::span<const Move> boxes) {
+    const bool taken = std::visit(
+        [&]<class S>(S& s) {
+            if constexpr (BuildsStill<S>) s.build_still(boxes);
+            return BuildsStill<S>;
+        },
+        structure_);
+    if (!taken) build(boxes);
+}
+
 void AnyStructure::commit() {
     std::visit([](auto& s) { s.commit(); }, structure_);
 }

@@ -38,6 +38,8 @@ public:
     void clear();
     /// Replaces all that is stored by boxes that are awake, and commits.
     void build(std::span<const Move> boxes);
+    /// The same for boxes that are likely to stay where they are; what is stored and found is no different.
+    void build_still(std::span<const Move> boxes);
     /// Puts all that is stored into `other`, which is empty, and takes its place; awake or not as it is. Commits.
     void become(AnyStructure other);
     /// To be called after changes and before anything const.

@@ -9,7 +9,10 @@
 namespace fase::broad {
 namespace {
 
-/// Appends the places at which the boxes are others than before, bit by bit, in order; `before` is as they are then.
+bool is_absent(const Aabb& box) { return box == Aabb{}; }
+
+/// Appends the places at which the boxes are others than before, bit by bit (a NaN that stays is no change), in order;
+/// `before` is as they are then.
 void take_changed(std::span<const Aabb> boxes, std::span<Aabb> before, std::vector<Proxy>& changed) {
     static_assert(sizeof(Aabb) == 24);
     const auto word = [](const Aabb& box, int k) {
@@ -40,45 +43,91 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     FASE_ASSERT(boxes.size() == populations.size());
     boxes_.assign(boxes.begin(), boxes.end());
     populations_.assign(populations.begin(), populations.end());
+    known_static_.assign(boxes.size(), 0);
+    absent_count_ = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        known_static_[i] = populations[i] == Population::Static ? 1 : 0;
+        if (is_absent(boxes[i])) {
+            populations_[i] = Population::Absent;
+            ++absent_count_;
+        } else if (populations[i] == Population::Absent) {
+            populations_[i] = Population::Awake;
+        }
+    }
     std::vector<Move> row;
     for (const Population population : {Population::Awake, Population::Asleep, Population::Static}) {
         row.clear();
         for (std::size_t i = 0; i < boxes.size(); ++i)
-            if (populations[i] == population) row.push_back({static_cast<Proxy>(i), boxes[i]});
+            if (populations_[i] == population) row.push_back({static_cast<Proxy>(i), boxes[i]});
         AnyStructure& structure = structure_of(*this, population);
         if (automatic_) {
             structure.clear();
             structure.become(*AnyStructure::named(suited_structure({row.size(), 1}, {}).structure));
         }
-        structure.build(row);
+        population == Population::Awake ? structure.build(row) : structure.build_still(row);
     }
     if (automatic_) suit_all(true);
     updates_ = 0;
     resting_.clear();
-    asleep_.find_pairs(tasks, resting_);
-    asleep_.find_pairs_between(tasks, static_, resting_);
+    std::vector<Pair> found;
+    asleep_.find_pairs(tasks, found);
+    asleep_.find_pairs_between(tasks, static_, found);
+    resting_.add(found);
 }
 
 void PairFinder::update(std::span<const Aabb> boxes) {
-    FASE_ASSERT(boxes.size() == populations_.size());
+    FASE_ASSERT(boxes.size() >= populations_.size());
+    absent_count_ += boxes.size() - populations_.size();
+    boxes_.resize(boxes.size());
+    populations_.resize(boxes.size(), Population::Absent);
+    known_static_.resize(boxes.size(), 0);
     take_changed(boxes, boxes_, changed_);
-    if (awake_.size() == boxes.size()) {
+    if (awake_.size() == boxes.size() &&
+        std::none_of(changed_.begin(), changed_.end(), [&](Proxy p) { return is_absent(boxes[p]); })) {
         awake_.move(changed_, boxes_);
     } else {
-        auto& [awake, woken, fixed] = changed_of_;
-        for (std::vector<Proxy>* list : {&awake, &woken, &fixed}) list->clear();
-        for (const Proxy p : changed_)
-            (populations_[p] == Population::Static   ? fixed
-             : populations_[p] == Population::Asleep ? woken
-                                                     : awake)
-                .push_back(p);
-        awake_.move(awake, boxes_);
-        if (!woken.empty()) wake(woken);
-        if (!fixed.empty()) move_static(fixed);
+        sort_out_changed();
     }
     constexpr std::uint32_t looks_again = 32;
     if (automatic_) suit_all(++updates_ % looks_again == 0);
-    awake_.commit();
+    for (AnyStructure* structure : {&awake_, &asleep_, &static_}) structure->commit();
+    keep_static_pairs();
+}
+
+/// Each changed box moves, comes, goes or wakes.
+void PairFinder::sort_out_changed() {
+    for (std::vector<Proxy>* list : {&moved_, &came_, &gone_, &leaving_, &static_moved_, &static_came_, &static_gone_})
+        list->clear();
+    for (const Proxy p : changed_) {
+        const bool goes = is_absent(boxes_[p]);
+        Population& population = populations_[p];
+        if (goes && population == Population::Absent) continue;
+        if (goes) ++absent_count_;
+        if (population == Population::Absent) --absent_count_;
+        switch (population) {
+            case Population::Awake: (goes ? gone_ : moved_).push_back(p); break;
+            case Population::Static: (goes ? static_gone_ : static_moved_).push_back(p); break;
+            case Population::Asleep:
+                leaving_.push_back(p);
+                if (!goes) came_.push_back(p);
+                break;
+            case Population::Absent: (known_static_[p] != 0 ? static_came_ : came_).push_back(p); break;
+        }
+        if (goes) {
+            population = Population::Absent;
+        } else if (population != Population::Static) {
+            population =
+                population == Population::Absent && known_static_[p] != 0 ? Population::Static : Population::Awake;
+        }
+    }
+    awake_.move(moved_, boxes_);
+    awake_.erase(gone_);
+    awake_.insert(came_, boxes_);
+    asleep_.erase(leaving_);
+    drop_pairs_of(leaving_);
+    static_.move(static_moved_, boxes_);
+    static_.erase(static_gone_);
+    static_.insert(static_came_, boxes_);
 }
 
 void PairFinder::suit_all(bool looks_closely) {
@@ -92,31 +141,33 @@ SuitedStructure PairFinder::chosen(Population population) const {
     return {name, suited_structure({structure.size(), 1}, name).reason};
 }
 
-void PairFinder::wake(std::span<const Proxy> proxies) {
-    for (const Proxy p : proxies) populations_[p] = Population::Awake;
-    asleep_.erase(proxies);
-    asleep_.commit();
-    awake_.insert(proxies, boxes_);
-    drop_resting([this](Proxy p) { return populations_[p] == Population::Awake; });
-}
-
-void PairFinder::move_static(std::span<const Proxy> proxies) {
-    static_.move(proxies, boxes_);
-    static_.commit();
-    if (asleep_.size() == 0) return;
-    drop_resting([&](Proxy p) { return std::binary_search(proxies.begin(), proxies.end(), p); });
+/// The pairs of static boxes that changed, came or went with those that sleep.
+void PairFinder::keep_static_pairs() {
+    if (asleep_.size() == 0 || static_moved_.size() + static_came_.size() + static_gone_.size() == 0) return;
+    drop_pairs_of(static_gone_);
+    drop_pairs_of(static_moved_);
     std::vector<Move> askers;
-    for (const Proxy p : proxies) askers.push_back({p, boxes_[p]});
-    asleep_.find_pairs_of(askers, resting_);
+    for (const std::vector<Proxy>* list : {&static_moved_, &static_came_})
+        for (const Proxy p : *list) askers.push_back({p, boxes_[p]});
+    std::vector<Pair> found;
+    asleep_.find_pairs_of(askers, found);
+    resting_.add(found);
+    for (std::vector<Proxy>* list : {&static_moved_, &static_came_, &static_gone_}) list->clear();
 }
 
-template <class F> void PairFinder::drop_resting(const F& goes) {
-    const auto gone = [&](Pair pair) { return goes(pair.a) || goes(pair.b); };
-    resting_.erase(std::remove_if(resting_.begin(), resting_.end(), gone), resting_.end());
+/// One by one, or where many leave by one look at all pairs.
+void PairFinder::drop_pairs_of(std::span<const Proxy> proxies) {
+    if (8 * proxies.size() < asleep_.size() + static_.size()) {
+        for (const Proxy p : proxies) resting_.drop(p);
+        return;
+    }
+    std::vector<std::uint8_t> leaves(populations_.size(), 0);
+    for (const Proxy p : proxies) leaves[p] = 1;
+    resting_.drop_if([&](Proxy p) { return leaves[p] != 0; });
 }
 
 void PairFinder::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    out.insert(out.end(), resting_.begin(), resting_.end());
+    out.insert(out.end(), resting_.pairs().begin(), resting_.pairs().end());
     find_awake_pairs(tasks, out);
 }
 
@@ -127,19 +178,25 @@ void PairFinder::find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) con
 }
 
 std::string PairFinder::broken_invariant() const {
+    std::size_t all = 0;
     for (const auto& [population, name] : {std::pair{Population::Awake, "awake: "},
                                            {Population::Asleep, "asleep: "},
                                            {Population::Static, "static: "}}) {
         const AnyStructure& structure = structure_of(*this, population);
         const auto here = std::count(populations_.begin(), populations_.end(), population);
+        all += structure.size();
         if (structure.size() != static_cast<std::size_t>(here))
             return std::string(name) + "the structure has another number of boxes";
         if (const std::string broken = structure.broken_invariant(); !broken.empty()) return name + broken;
     }
-    for (const Pair pair : resting_)
-        if (population(pair.a) == Population::Awake || population(pair.b) == Population::Awake)
-            return "an awake box is in a resting pair";
-    return {};
+    if (all + absent_count_ != populations_.size()) return "a box is lost";
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+        if (is_absent(boxes_[i]) != (populations_[i] == Population::Absent)) return "a box is there and absent";
+    for (const Pair pair : resting_.pairs())
+        for (const Proxy p : {pair.a, pair.b})
+            if (population(p) == Population::Awake || population(p) == Population::Absent)
+                return "a box that does not rest is in a resting pair";
+    return resting_.broken_invariant();
 }
 
 }  // namespace fase::broad

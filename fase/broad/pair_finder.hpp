@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "fase/broad/kept_pairs.hpp"
 #include "fase/broad/suited_structure.hpp"
 
 namespace fase::broad {
@@ -13,11 +14,13 @@ enum class Population : std::uint8_t {
     Awake,
     Asleep,  ///< rests until its box changes; from then on it is awake
     Static,  ///< may be moved, but two of them are never a pair
+    Absent,  ///< not there; see PairFinder
 };
 
 /// The pairs of a set of boxes that gets new places frame by frame: all that overlap, but for those of two static ones.
 /// Only what is awake looks for pairs; the pairs of two that rest are kept from build() on. Boxes are known by their
-/// place in the list. Memory is reused from frame to frame.
+/// place in the list. One that is empty (Aabb{}) is not there: boxes come and go so, and those that come are awake, if
+/// they are not known to be static. Memory is reused from frame to frame.
 class PairFinder {
 public:
     /// @param kind an empty structure: the three populations stand in copies of it
@@ -29,10 +32,11 @@ public:
         return finder;
     }
 
-    /// Replaces all boxes, and finds the pairs of those that rest. `populations` is as long as `boxes`.
+    /// Replaces all boxes, and finds the pairs of those that rest. `populations` is as long as `boxes`; absent are
+    /// those that are empty, whatever it says.
     void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
-    /// Takes the boxes of the next frame, as many as build() had. Only those that changed
-    /// cost more than a comparison.
+    /// Takes the boxes of the next frame: as many as there were, or more, which come then. Only those that changed,
+    /// come or go cost more than a comparison.
     void update(std::span<const Aabb> boxes);
     /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
@@ -45,7 +49,7 @@ public:
     /// How many boxes are awake now.
     [[nodiscard]] std::size_t awake() const { return awake_.size(); }
     /// Pairs of two that rest.
-    [[nodiscard]] std::span<const Pair> resting_pairs() const { return resting_; }
+    [[nodiscard]] std::span<const Pair> resting_pairs() const { return resting_.pairs(); }
     /// Of the three structures together.
     [[nodiscard]] StructureStats stats() const { return awake_.stats() + asleep_.stats() + static_.stats(); }
     /// "" when all is well; else what is not.
@@ -53,15 +57,16 @@ public:
 
 private:
     AnyStructure awake_, asleep_, static_;
-    std::vector<Aabb> boxes_;              // by place
-    std::vector<Population> populations_;  // by place
-    std::vector<Pair> resting_;
+    std::vector<Aabb> boxes_;                 // by place
+    std::vector<Population> populations_;     // by place
+    std::vector<std::uint8_t> known_static_;  // by place: static, or would be if it were there
+    std::size_t absent_count_ = 0;
+    KeptPairs resting_;
     bool automatic_ = false;
     std::uint32_t updates_ = 0;
     std::vector<Proxy> changed_;  // of one update
-    struct Changed {
-        std::vector<Proxy> awake, woken, fixed;
-    } changed_of_;  // the same by population
+    // The same, sorted out; those that wake both leave and come.
+    std::vector<Proxy> moved_, came_, gone_, leaving_, static_moved_, static_came_, static_gone_;
 
     template <class Self> [[nodiscard]] static auto& structure_of(Self& self, Population population) {
         return population == Population::Static   ? self.static_
@@ -69,10 +74,9 @@ private:
                                                   : self.awake_;
     }
     void suit_all(bool looks_closely);
-    void wake(std::span<const Proxy> proxies);
-    void move_static(std::span<const Proxy> proxies);
-    /// Drops the resting pairs for which `goes(proxy)` holds for either.
-    template <class F> void drop_resting(const F& goes);
+    void sort_out_changed();
+    void keep_static_pairs();
+    void drop_pairs_of(std::span<const Proxy> proxies);
 };
 
 }  // namespace fase::broad

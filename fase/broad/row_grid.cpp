@@ -102,6 +102,11 @@ void RowGrid::build(std::span<const Move> boxes) {
     commit();
 }
 
+void RowGrid::build_still(std::span<const Move> boxes) {
+    clear();
+    moving_.build_still(boxes, settings_);
+}
+
 /// One chunk after the other, as tasks take them.
 void RowGrid::find(bool resting_too, std::vector<Pair>& out) const {
     find_odd(resting_too, out);

@@ -39,6 +39,8 @@ public:
     void commit();
     /// Replaces all that is stored by boxes that are awake, and commits.
     void build(std::span<const Move> boxes);
+    /// The same for boxes that are likely to stay where they are: they stand in blocks from the beginning.
+    void build_still(std::span<const Move> boxes);
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
         if (moving_.traverse(region, visit)) resting_.traverse(region, visit);

@@ -104,6 +104,20 @@ void RowPart::settle(const RowGridSettings& settings) {
     loose_.drop_ordinary();
 }
 
+void RowPart::build_still(std::span<const Move> boxes, const RowGridSettings& settings) {
+    std::vector<Move> ordinary;
+    ordinary.reserve(boxes.size());
+    for (const Move& m : boxes) {
+        if (is_ordinary(m.box)) {
+            ordinary.push_back(m);
+        } else {
+            loose_.insert(m.proxy, m.box);
+        }
+    }
+    blocks_.commit(ordinary, settings);
+    commit(settings);
+}
+
 void RowPart::find_own_pairs(std::size_t k, std::size_t begin, std::size_t end, row_grid::PairBlock& out) const {
     const RowView mine = set(k).view();
     row_grid::find_own_pairs(mine, begin, end, out);

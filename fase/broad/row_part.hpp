@@ -35,6 +35,8 @@ public:
     void commit(const RowGridSettings& settings);
     /// commit() for boxes that are likely to stay where they are: all ordinary ones go into blocks at once.
     void settle(const RowGridSettings& settings);
+    /// Boxes that are likely to stay where they are, when there is none; commits.
+    void build_still(std::span<const Move> boxes, const RowGridSettings& settings);
 
     [[nodiscard]] bool holds(Proxy p) const { return loose_.holds(p) || blocks_.holds(p); }
     [[nodiscard]] Aabb box(Proxy p) const { return loose_.holds(p) ? loose_.box(p) : blocks_.box(p); }

@@ -95,6 +95,12 @@ concept BuildsAtOnce = Structure<S> && requires(S s, std::span<const Move> boxes
     s.build(boxes);
 };
 
+/// A structure that likes to know that boxes will seldom move: build() otherwise.
+template <class S>
+concept BuildsStill = Structure<S> && requires(S s, std::span<const Move> boxes) {
+    s.build_still(boxes);
+};
+
 /// A structure that goes through near boxes first; see broad::nearest_first().
 template <class S>
 concept BestFirst = Structure<S> &&

@@ -117,5 +117,56 @@ TEST_P(EveryStructure, IsBuiltAnewAndMayBeEmpty) {
     EXPECT_EQ(pairs_of(finder, *one).size(), 0u);
 }
 
+TEST_P(EveryStructure, KnowsAnEmptyBoxForOneThatIsNotThere) {
+    Random random(6);
+    std::vector<Aabb> boxes;
+    std::vector<Population> populations;
+    const auto draw = [&] {
+        return random.below(40) == 0 ? Aabb::everything()
+                                     : conformance::box_around(conformance::point_in(random, 0, 8), {0.5f, 0.5f, 0.5f});
+    };
+    const auto there = [&] {  // pairs of endless boxes and empty ones do not count
+        std::vector<Pair> pairs = expected_pairs(boxes, populations);
+        std::erase_if(pairs, [&](Pair pair) { return boxes[pair.a] == Aabb{} || boxes[pair.b] == Aabb{}; });
+        return pairs;
+    };
+    for (std::size_t i = 0; i < 200; ++i) {
+        boxes.push_back(random.below(4) == 0 ? Aabb{} : draw());
+        populations.push_back(static_cast<Population>(random.below(3)));
+    }
+    finder.build(*one, boxes, populations);
+    for (int frame = 0; frame < 40; ++frame) {
+        ASSERT_EQ(finder.broken_invariant(), "") << frame;
+        ASSERT_TRUE(pairs_of(finder, *one) == there()) << frame;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            EXPECT_EQ(finder.population(static_cast<Proxy>(i)) == Population::Absent, boxes[i] == Aabb{});
+            if (random.below(frame % 7 == 0 ? 2 : 20) == 0) boxes[i] = random.below(3) == 0 ? Aabb{} : draw();
+        }
+        boxes.push_back(draw());
+        populations.push_back(Population::Awake);
+        finder.update(boxes);
+    }
+}
+
+TEST_P(EveryStructure, KeepsTheRestingPairsOfWhatIsNotTouched) {
+    const auto cube = [](float x) { return Aabb{{x, 0, 0}, {x + 1, 1, 1}}; };
+    std::vector<Aabb> boxes;
+    for (int i = 0; i < 100; ++i) boxes.push_back(cube(0.75f * static_cast<float>(i)));
+    finder.build(*one, boxes, std::vector<Population>(100, Population::Asleep));
+    EXPECT_EQ(finder.resting_pairs().size(), 99u);
+    boxes[50].hi.y = 2;
+    finder.update(boxes);
+    EXPECT_EQ(finder.resting_pairs().size(), 97u);
+    boxes[10] = {};
+    finder.update(boxes);
+    EXPECT_EQ(finder.resting_pairs().size(), 95u);
+    EXPECT_EQ(pairs_of(finder, *one).size(), 97u);
+    for (Aabb& box : boxes) box = {box.lo + Vec3{0, 1, 0}, box.hi + Vec3{0, 1, 0}};
+    boxes[10] = cube(7.5f);
+    finder.update(boxes);
+    EXPECT_EQ(finder.resting_pairs().size(), 0u);
+    EXPECT_EQ(finder.awake(), 100u);
+}
+
 }  // namespace
 }  // namespace fase::broad
