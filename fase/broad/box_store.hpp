@@ -66,12 +66,14 @@ public:
         changed_ = true;
     }
 
-    /// Forgets the ordinary boxes, which have gone elsewhere.
+    /// Forgets the ordinary boxes, which have gone elsewhere; and keeps no room for more than some.
     void drop_ordinary() {
         for (const Move& m : ordinary_) {
             resting_ -= is_awake(m.proxy) ? 0 : 1;
             places_[m.proxy] = {};
         }
+        constexpr std::size_t some = 4096;
+        if (ordinary_.capacity() > some) ordinary_ = {};
         ordinary_.clear();
     }
 
