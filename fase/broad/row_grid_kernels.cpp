@@ -23,6 +23,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using fase::HWY_NAMESPACE::Wide;
 #include "fase/broad/row_grid_sort-inl.hpp"
 //
+#include "fase/broad/row_grid_test-inl.hpp"
+//
 #include "fase/broad/row_grid_pairs-inl.hpp"
 }  // namespace fase::broad::row_grid::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -9,28 +9,30 @@
 
 namespace fase::broad::row_grid {
 
-/// Grows the caller's vector by a block at a time and lets loops write pairs straight into it; cuts off what was not
-/// needed when it dies.
+/// Where loops write pairs before they are appended to the caller's vector: small enough to stay in the fastest cache.
+/// What is left is appended when it dies.
 class PairBlock {
 public:
-    explicit PairBlock(std::vector<Pair>& out) : out_(out), at(out.data() + out.size()), end(at) {}
+    static constexpr std::size_t most = 1024;  ///< that can be written from one flush() to the next
+
+    explicit PairBlock(std::vector<Pair>& out) : at(begin()), out_(out) {}
     PairBlock(const PairBlock&) = delete;
     PairBlock& operator=(const PairBlock&) = delete;
-    ~PairBlock() { out_.resize(static_cast<std::size_t>(at - out_.data())); }
+    ~PairBlock() { flush(at); }
+
+    Pair* at;  ///< where the next pair goes
+    [[nodiscard]] Pair* end() { return begin() + most; }
+    /// Appends all pairs before `written` and returns where the next goes then.
+    [[gnu::noinline]] Pair* flush(const Pair* written) {
+        out_.insert(out_.end(), static_cast<const Pair*>(begin()), written);
+        return at = begin();
+    }
 
 private:
     std::vector<Pair>& out_;
+    alignas(64) unsigned char memory_[most * sizeof(Pair)];  // left as it is: setting it would cost
 
-public:
-    Pair* at;   ///< where the next pair goes
-    Pair* end;  ///< what may be written ends here
-    /// Moves `at` and `end` on, to where all pairs before `written` are kept and `wanted` more have room.
-    [[gnu::noinline]] void make_room(const Pair* written, std::size_t wanted) {
-        const auto count = static_cast<std::size_t>(written - out_.data());
-        out_.resize(count + 1024 + wanted);
-        at = out_.data() + count;
-        end = out_.data() + out_.size();
-    }
+    [[nodiscard]] Pair* begin() { return reinterpret_cast<Pair*>(memory_); }
 };
 
 /// Who asks and which proxies are left out: the asker's own, and smaller ones that `is_asker` marks.

@@ -44,12 +44,24 @@ void RowSet::fit(std::span<const Move> boxes, const RowGridSettings& settings) {
 
 /// For the records and for what is read beyond them; grows only.
 void RowSet::make_room() {
-    const std::size_t wanted = count_ + row_slack;
-    if (proxies_.size() < wanted) {
-        const std::size_t room = count_ + count_ / 16 + row_slack;
-        proxies_.resize(room);
-        for (std::vector<float>& column : columns_) column.resize(room);
+    if (proxies_.size() >= count_ + row_slack) return;
+    const std::size_t room = count_ + count_ / 16 + row_slack;
+    proxies_.resize(room);
+    // Columns a multiple of a page apart would all want the same places of a cache.
+    stride_ = (room + 15) / 16 * 16;
+    if (stride_ % 1024 < 128) stride_ += 128;
+    columns_.assign(6 * stride_ + row_slack, 0.0f);
+}
+
+/// Where in columns_ each bound begins: lo x y z, hi x y z of the world.
+std::array<std::size_t, 6> RowSet::column_places() const {
+    std::array<std::size_t, 6> places{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto a = static_cast<std::size_t>(fit_.axis[k]);
+        places[a] = k * stride_;
+        places[a + 3] = (k + 3) * stride_;
     }
+    return places;
 }
 
 void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
@@ -61,7 +73,7 @@ void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings)
     if (stale_ || other_count || ++age_ >= settings.fit_lasts) fit(boxes, settings);
     if (count_ == 0) return;
 
-    float* const keys = columns_[0].data();  // until the boxes come there
+    float* const keys = columns_.data();  // until the boxes come there
     for (;;) {
         table_.assign(fit_.table, 0);
         const std::size_t outside = row_grid::count_cells(boxes, fit_, keys, table_.data());
@@ -77,7 +89,8 @@ void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings)
         proxies_[table_[std::bit_cast<std::uint32_t>(keys[i])]++] = static_cast<std::uint32_t>(i);
 
     std::array<float*, 6> columns;
-    for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_[k].data();
+    const std::array<std::size_t, 6> places = column_places();
+    for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
     for (std::size_t k = 0; k < fit_.levels.size(); ++k) {
         RowLevel& level = fit_.levels[k];
         const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
@@ -126,19 +139,21 @@ void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
 /// Not a number across the rows: no comparison holds. Along the row it stays where it is, for rows in order.
 void RowSet::kill(std::size_t record) {
     FASE_ASSERT(record < count_ && proxies_[record] != killed);
-    for (const int a : {fit_.axis[1], fit_.axis[2]})
-        for (const int side : {a, a + 3})
-            columns_[static_cast<std::size_t>(side)][record] = std::numeric_limits<float>::quiet_NaN();
+    for (const std::size_t column : {1u, 2u, 4u, 5u})
+        columns_[column * stride_ + record] = std::numeric_limits<float>::quiet_NaN();
     proxies_[record] = killed;
     ++dead_;
 }
 
 RowView RowSet::view() const {
     RowView view;
+    const std::array<std::size_t, 6> places = column_places();
     for (std::size_t a = 0; a < 3; ++a) {
-        view.lo[a] = columns_[a].data();
-        view.hi[a] = columns_[a + 3].data();
+        view.lo[a] = columns_.data() + places[a];
+        view.hi[a] = columns_.data() + places[a + 3];
     }
+    view.columns = columns_.data();
+    view.stride = stride_;
     view.proxies = proxies_.data();
     view.count = count_;
     view.table = table_.data();
@@ -149,10 +164,9 @@ RowView RowSet::view() const {
 }
 
 std::size_t RowSet::bytes() const {
-    std::size_t columns = 0;
-    for (const std::vector<float>& column : columns_) columns += column.capacity() * sizeof(float);
-    return columns + proxies_.capacity() * sizeof(Proxy) + table_.capacity() * sizeof(std::uint32_t) +
-           rows_.capacity() * sizeof(ListedRow) + fit_.levels.capacity() * sizeof(RowLevel) +
+    return columns_.capacity() * sizeof(float) + proxies_.capacity() * sizeof(Proxy) +
+           table_.capacity() * sizeof(std::uint32_t) + rows_.capacity() * sizeof(ListedRow) +
+           fit_.levels.capacity() * sizeof(RowLevel) +
            (items_.capacity() + items_scratch_.capacity()) * sizeof(RowItem) +
            sample_.corners.capacity() * (sizeof sample_.corners[0] + 4 * sizeof(float)) + sample_.taken.capacity();
 }

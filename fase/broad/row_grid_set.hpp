@@ -100,7 +100,9 @@ struct ListedRow {
 /// What searches read: records in the order of levels, rows, cells. Columns have `row_slack` readable floats beyond
 /// their end.
 struct RowView {
-    std::array<const float*, 3> lo{}, hi{};
+    std::array<const float*, 3> lo{}, hi{};  ///< by axis of the world
+    const float* columns = nullptr;          ///< the same six, lower bounds first, in the order of `axis`,
+    std::size_t stride = 0;                  ///< so far apart
     const Proxy* proxies = nullptr;
     std::size_t count = 0;
     const std::uint32_t* table = nullptr;  ///< table[level.table + cell]: first record of the cell
@@ -139,7 +141,8 @@ public:
 
 private:
     RowFit fit_;
-    std::array<std::vector<float>, 6> columns_;  // lo x y z, hi x y z
+    std::vector<float> columns_;  // as in RowView
+    std::size_t stride_ = 0;
     std::vector<Proxy> proxies_;
     std::vector<std::uint32_t> table_;
     std::vector<ListedRow> rows_;
@@ -157,6 +160,7 @@ private:
 
     void fit(std::span<const Move> boxes, const RowGridSettings& settings);
     void make_room();
+    [[nodiscard]] std::array<std::size_t, 6> column_places() const;
     void sort_listed(std::span<const Move> boxes, RowLevel& level);
     [[nodiscard]] std::string broken_record(const RowLevel& level, std::size_t i) const;
 };

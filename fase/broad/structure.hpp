@@ -18,9 +18,9 @@ namespace fase::broad {
 /// erase().
 using Proxy = std::uint32_t;
 
-/// Two overlapping proxies, a < b.
+/// Two overlapping proxies, a < b. Without defaults, so that vectors of pairs are copied and set in whole blocks.
 struct Pair {
-    Proxy a = 0, b = 0;
+    Proxy a, b;
     friend constexpr auto operator<=>(Pair, Pair) = default;
 };
 constexpr Pair ordered_pair(Proxy p, Proxy q) { return p < q ? Pair{p, q} : Pair{q, p}; }

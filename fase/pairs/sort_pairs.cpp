@@ -35,7 +35,7 @@ void PairSorter::sort(std::vector<Pair>& pairs) {
         std::sort(pairs.begin(), pairs.end());
         return;
     }
-    Pair differing;  // bits that are not the same in all
+    Pair differing{};  // bits that are not the same in all
     for (const Pair& pair : pairs) {
         differing.a |= pair.a ^ pairs[0].a;
         differing.b |= pair.b ^ pairs[0].b;
