@@ -129,7 +129,12 @@ public:
     [[nodiscard]] RowView view() const;
     /// Of a record that is not killed.
     [[nodiscard]] Aabb box(std::size_t i) const {
-        return {{columns_[0][i], columns_[1][i], columns_[2][i]}, {columns_[3][i], columns_[4][i], columns_[5][i]}};
+        Aabb box;
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.lo[fit_.axis[k]] = columns_[k * stride_ + i];
+            box.hi[fit_.axis[k]] = columns_[(k + 3) * stride_ + i];
+        }
+        return box;
     }
     /// Records, the killed ones too.
     [[nodiscard]] std::size_t size() const { return count_; }
