@@ -44,6 +44,25 @@ public:
         take_out(p);
         append(p, box);
     }
+    /// move() in a third of the time: what the box is like is looked at later, by see_odd() or see_all(). Until then it
+    /// stands where the one before it stood.
+    void move_unseen(Proxy p, const Aabb& box) {
+        FASE_ASSERT(holds(p));
+        const Place place = places_[p];
+        changed_ = true;
+        row(place.odd != 0)[place.at].box = box;
+    }
+    /// Puts boxes where they belong that stand among the odd ones since move_unseen(). O(odd ones).
+    void see_odd() {
+        for (std::size_t i = odd_.size(); i-- > 0;)
+            if (is_ordinary(odd_[i].box)) replace(odd_[i]);
+    }
+    /// The same for all. O(n).
+    void see_all() {
+        see_odd();
+        for (std::size_t i = ordinary_.size(); i-- > 0;)
+            if (!is_ordinary(ordinary_[i].box)) replace(ordinary_[i]);
+    }
     void erase(Proxy p) {
         FASE_ASSERT(holds(p));
         resting_ -= is_awake(p) ? 0 : 1;
@@ -170,6 +189,10 @@ private:
         places_[p].odd = odd ? 1 : 0;
         places_[p].at = static_cast<std::uint32_t>(mine.size()) & nowhere;
         mine.push_back({p, box});
+    }
+    void replace(Move m) {
+        take_out(m.proxy);
+        append(m.proxy, m.box);
     }
     /// The last of the row takes the place.
     void take_out(Proxy p) {

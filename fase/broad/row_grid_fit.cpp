@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fase/broad/box_store.hpp"
 #include "fase/broad/row_grid_set.hpp"
 
 namespace fase::broad {
@@ -58,10 +59,12 @@ void take_sample(std::span<const Move> boxes, std::size_t most, RowSample& sampl
     const std::size_t count = std::min(boxes.size(), most);
     for (std::size_t i = 0; i < count; ++i) {
         const Aabb& box = boxes[i * boxes.size() / count].box;
+        if (!is_ordinary(box)) continue;  // this will be noticed later
         sample.sides.push_back(longest_side(box));
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
         for (std::size_t a = 0; a < 3; ++a) sample.sorted[a].push_back(sample.corners.back()[a]);
     }
+    if (sample.sides.empty()) return;
     std::sort(sample.sides.begin(), sample.sides.end());
     std::array<bool, 3> wide{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -118,15 +121,9 @@ std::array<int, 3> axes_for(const RowSample& sample) {
     return {longest, (longest + 1) % 3, (longest + 2) % 3};
 }
 
-}  // namespace
-
-void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
-    fit.levels.clear();
-    fit.table = 0;
-    if (boxes.empty()) return;
-    take_sample(boxes, std::max(settings.sample, 1u), sample);
+/// All levels but the last, which takes what is larger than all of the sample.
+void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit& fit) {
     fit.axis = axes_for(sample);
-
     // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
     const double most_sides = sample.side_at(0.98), many_sides = sample.side_at(0.8);
     const double spacing = spacing_of(sample, static_cast<double>(sample.boxes), sample.side_at(0.98));
@@ -160,6 +157,16 @@ void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowS
         }
         fit.levels.push_back(level);
     }
+}
+
+}  // namespace
+
+void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+    fit.levels.clear();
+    fit.table = 0;
+    if (boxes.empty()) return;
+    take_sample(boxes, std::max(settings.sample, 1u), sample);
+    if (!sample.sides.empty()) add_levels(settings, sample, fit);
     RowLevel rest;
     rest.limit = Aabb::infinity;
     fit.levels.push_back(rest);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fase/broad/box_store.hpp"
 #include "fase/broad/row_grid_compress.hpp"
 #include "fase/broad/row_grid_kernels.hpp"
 #include "fase/math/wide-inl.hpp"
@@ -37,7 +38,7 @@ HWY_EXPORT(gather_boxes_wide);
 HWY_EXPORT(find_own_pairs_wide);
 HWY_EXPORT(find_asked_pairs_wide);
 
-std::size_t count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return HWY_DYNAMIC_DISPATCH(count_cells_wide)(boxes, fit, keys, table);
 }
 std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,

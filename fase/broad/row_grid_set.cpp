@@ -64,20 +64,24 @@ std::array<std::size_t, 6> RowSet::column_places() const {
     return places;
 }
 
-void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
+bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
     count_ = boxes.size();
     dead_ = 0;
     rows_.clear();
     make_room();
     const bool other_count = count_ > fitted_count_ + fitted_count_ / 4 || count_ < fitted_count_ - fitted_count_ / 4;
     if (stale_ || other_count || ++age_ >= settings.fit_lasts) fit(boxes, settings);
-    if (count_ == 0) return;
+    if (count_ == 0) return true;
 
     float* const keys = columns_.data();  // until the boxes come there
     for (;;) {
         table_.assign(fit_.table, 0);
-        const std::size_t outside = row_grid::count_cells(boxes, fit_, keys, table_.data());
-        if (outside <= count_ / 16 || age_ == 0) break;
+        const row_grid::Counted counted = row_grid::count_cells(boxes, fit_, keys, table_.data());
+        if (counted.odd) {
+            *this = {};
+            return false;
+        }
+        if (counted.outside <= count_ / 16 || age_ == 0) break;
         fit(boxes, settings);
     }
 
@@ -100,6 +104,7 @@ void RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings)
         level.reach = row_grid::gather_boxes(boxes, level.first, level.first + level.count, columns, proxies_.data());
     }
     if (fit_.levels.back().count > count_ / 16) stale_ = age_ != 0;
+    return true;
 }
 
 /// Orders the level's boxes, of which there are only the numbers yet, by row and lower corner along it.

@@ -121,7 +121,8 @@ inline constexpr Proxy killed = 0xffffffff;
 /// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
 class RowSet {
 public:
-    void build(std::span<const Move> boxes, const RowGridSettings& settings);
+    /// The boxes must be ordinary (see is_ordinary()). When one is not, nothing is stored and the answer is false.
+    bool build(std::span<const Move> boxes, const RowGridSettings& settings);
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
     void kill(std::size_t record);

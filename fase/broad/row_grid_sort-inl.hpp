@@ -11,14 +11,14 @@ inline std::size_t level_for(const Move& m, const RowFit& fit) {
     const Vec3 e = extent(m.box);
     const float side = std::max(e.x, std::max(e.y, e.z));
     std::size_t k = 0;
-    while (!(side <= fit.levels[k].limit)) ++k;
+    while (k + 1 < fit.levels.size() && !(side <= fit.levels[k].limit)) ++k;
     return k;
 }
 
 #if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
-inline std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+inline Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     const RowLevel& low = fit.levels[0];
-    std::size_t outside = 0;
+    Counted found;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const std::uint32_t counter = counter_of(boxes[i], fit, level_for(boxes[i], fit));
         keys[i] = std::bit_cast<float>(counter);
@@ -30,9 +30,10 @@ inline std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& f
             const float t = (lo[a] - low.origin[k]) * low.per_cell[k];
             far |= t < -1 || t > low.last[k] + 2;
         }
-        outside += far ? 1 : 0;
+        found.outside += far ? 1 : 0;
+        found.odd |= !is_ordinary(boxes[i].box);
     }
-    return outside;
+    return found;
 }
 
 inline std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
@@ -82,8 +83,8 @@ struct Turned {
     }
 };
 
-std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
-                             std::uint32_t* HWY_RESTRICT table) {
+Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
+                         std::uint32_t* HWY_RESTRICT table) {
     constexpr std::size_t lanes = Wide::lanes;
     const Wide::Tag d;
     const IntTag di;
@@ -99,7 +100,9 @@ std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, flo
     }
     const auto zero = hn::Zero(d), before = hn::Set(d, -1.0f), one = hn::Set(d, 1.0f);
     const auto first_counter = hn::Set(di, static_cast<std::int32_t>(low.table + 1));
-    std::size_t outside = 0;
+    const auto far_away = hn::Set(d, largest_built);
+    auto all_ordinary = hn::Eq(zero, zero);
+    Counted found;
     for (std::size_t i = 0; i < boxes.size(); i += lanes) {
         const std::size_t count = std::min(lanes, boxes.size() - i);
         std::array<std::uint32_t, lanes> order;
@@ -117,6 +120,9 @@ std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, flo
             const auto t = hn::Mul(hn::Sub(turned.row[1 + a].v, origin[a]), per_cell[a]);
             const auto inside = hn::Min(hn::Max(t, zero), last[a]);
             counter = hn::Add(counter, hn::Mul(hn::ConvertTo(di, inside), stride[a]));
+            const auto lo = turned.row[1 + a].v, hi = turned.row[4 + a].v;
+            const auto within = hn::And(hn::Le(hn::Abs(lo), far_away), hn::Le(hn::Abs(hi), far_away));
+            all_ordinary = hn::And(all_ordinary, hn::And(within, hn::Le(lo, hi)));
             far = hn::Or(far, hn::Or(hn::Lt(t, before), hn::Gt(t, hn::Add(last[a], hn::Add(one, one)))));
         }
         alignas(64) std::array<std::int32_t, lanes> counters;
@@ -132,9 +138,10 @@ std::size_t count_cells_wide(std::span<const Move> boxes, const RowFit& fit, flo
             }
         }
         for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
-        outside += hn::CountTrue(d, far);
+        found.outside += hn::CountTrue(d, far);
     }
-    return outside;
+    found.odd = !hn::AllTrue(d, all_ordinary);
+    return found;
 }
 
 std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,

@@ -44,11 +44,18 @@ void RowPart::commit(const RowGridSettings& settings) {
         part(settings);
     }
     // What went into blocks has left the loose ones changed: that is settled here.
-    if (loose_.take_changed() || changed) sorted_.build(loose_.ordinary(), settings);
+    if (loose_.take_changed() || changed) sort(settings);
     next_watch_ -= next_watch_ > 0 ? 1 : 0;
     watches_ = next_watch_ == 0 && blocks_.size() == 0 && loose_.size() >= many;
     only_sorts_ = !watches_ && blocks_.size() == 0;
     changed_.clear();
+}
+
+void RowPart::sort(const RowGridSettings& settings) {
+    loose_.see_odd();
+    if (sorted_.build(loose_.ordinary(), settings)) return;
+    loose_.see_all();
+    sorted_.build(loose_.ordinary(), settings);
 }
 
 /// What has not changed since it was sorted becomes a block.

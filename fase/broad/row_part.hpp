@@ -23,7 +23,7 @@ public:
     /// move(), when it is here and nothing has to be done but that; else false.
     bool moves_at_once(Proxy p, const Aabb& box) {
         if (!only_sorts_ || !loose_.holds(p)) return false;
-        loose_.move(p, box);
+        loose_.move_unseen(p, box);
         return true;
     }
     void erase(Proxy p) {
@@ -80,6 +80,7 @@ private:
     std::vector<Move> settling_;    // scratch
 
     void note(Proxy p);
+    void sort(const RowGridSettings& settings);
     void part(const RowGridSettings& settings);
     void join();
     void look_for_calm();
