@@ -11,6 +11,7 @@
 #include "cli/draw.hpp"
 #include "cli/generate.hpp"
 #include "cli/info.hpp"
+#include "cli/level.hpp"
 #include "cli/output.hpp"
 #include "cli/pairs.hpp"
 #include "cli/query.hpp"
@@ -59,6 +60,7 @@ int run_program(int count, char** arguments) {
     add_pairs(app, start);
     add_query(app, start);
     add_atlas(app, start);
+    add_level(app, start);
 #ifdef HAS_FASE_BENCH
     add_bench(app, start);
 #endif

@@ -44,6 +44,7 @@ void keep_right(std::vector<Point>& outline, Point a, Point b, std::vector<Point
 class Checker {
 public:
     Checker(const Map& map, const LevelBsp& bsp) : map_(map), bsp_(bsp) {
+        for (std::uint32_t i = 0; i < map.sectors.size(); ++i) joined_.push_back(i);
         for (const Point p : bsp.vertices) plan_.add(p);
     }
 
@@ -68,7 +69,12 @@ private:
     PlanBox plan_;
     BspCheck out_;
     std::vector<double> areas_;
+    std::vector<std::uint32_t> joined_;  ///< by sector: one that it is measured with, or itself
 
+    [[nodiscard]] std::uint32_t first_of(std::uint32_t sector) const {
+        while (joined_[sector] != sector) sector = joined_[sector];
+        return sector;
+    }
     [[nodiscard]] Point at(std::uint32_t vertex) const { return bsp_.vertices[vertex]; }
     /// Where a seg lies: of walls the line, which is not rounded.
     [[nodiscard]] std::pair<Point, Point> way_of(const Seg& seg) const {
@@ -97,7 +103,10 @@ private:
                 for (const std::uint32_t v : {before.from, before.to})
                     out_.bulge = std::max(out_.bulge, left_of(a, b, at(v)));
             }
-            if (seg.line != no_line) mixed |= sector_of(seg) != s.sector;
+            if (seg.line == no_line || sector_of(seg) == s.sector) continue;
+            mixed = true;
+            const std::uint32_t a_sector = first_of(sector_of(seg)), b_sector = first_of(s.sector);
+            joined_[std::max(a_sector, b_sector)] = std::min(a_sector, b_sector);
         }
         for (std::uint32_t i = 0; i < s.edges; ++i) {
             const Seg& seg = segs[i];
@@ -218,13 +227,18 @@ private:
 
     void check_areas() {
         const std::vector<double> by_lines = sector_areas(map_);
-        for (std::size_t i = 0; i < by_lines.size(); ++i) {
-            if (by_lines[i] < 0) {
-                ++out_.open_sectors;
-                continue;
-            }
-            out_.whole_area += by_lines[i];
-            const double error = std::abs(areas_[i] - by_lines[i]) / std::max(by_lines[i], 1.0);
+        std::vector<double> wanted(by_lines.size()), found(by_lines.size());
+        std::vector<std::uint8_t> open(by_lines.size());
+        for (std::uint32_t i = 0; i < by_lines.size(); ++i) {
+            out_.open_sectors += by_lines[i] < 0 ? 1 : 0;
+            open[first_of(i)] |= by_lines[i] < 0 ? 1 : 0;
+            wanted[first_of(i)] += by_lines[i];
+            found[first_of(i)] += areas_[i];
+        }
+        for (std::uint32_t i = 0; i < by_lines.size(); ++i) {
+            if (open[i] != 0 || first_of(i) != i) continue;
+            out_.whole_area += wanted[i];
+            const double error = std::abs(found[i] - wanted[i]) / std::max(wanted[i], 1.0);
             if (error <= out_.area_error) continue;
             out_.area_error = error;
             out_.worst_sector = i;

@@ -22,7 +22,9 @@ struct BspCheck {
     std::size_t mixed = 0;           ///< sub-sectors with walls of several sectors
     std::size_t open_sectors = 0;    ///< sectors whose lines are no closed loops: not measured
     /// |area of a sector's sub-sectors - area by its lines| of the closed sector where it is worst, as a share of the
-    /// area (of at least one square unit); sub-sectors without edges are measured as cells of the tree.
+    /// area (of at least one square unit); sub-sectors without edges are measured as cells of the tree. Sectors that
+    /// are mixed are measured together: a loop of lines with the same sector on both sides, as in deep water, has no
+    /// area by its lines, though it is there.
     double area_error = 0;
     std::size_t worst_sector = 0;
     double whole_area = 0;  ///< of all closed sectors, by their lines
