@@ -241,7 +241,7 @@ private:
             if ((seg.left ? line.left : line.right) == no_side)
                 fail(fmt::format("segs[{}]", i), fmt::format("found a side that line {} does not have", seg.line));
         }
-        check_ranges();
+        if (!error_) check_ranges();
         if (!error_) check_tree();
     }
     void check_ranges() {
