@@ -9,7 +9,7 @@ namespace fase::level {
 /// How long partition lines are sought.
 enum class Effort {
     Quick,     ///< the line that looks best is taken
-    Normal,    ///< in small sets the best six are tried out
+    Normal,    ///< in small sets the best four are tried out
     Thorough,  ///< in larger sets too, more of them, and twice over: some five times the time of Normal
 };
 

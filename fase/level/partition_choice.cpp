@@ -8,13 +8,6 @@
 namespace fase::level {
 namespace {
 
-/// Price of a partition line. The power 2.5 of both parts is between the sum of depths that they must have at least
-/// (n log n, too patient with small parts) and the larger part alone (which pays too many cuts for balance).
-double price_of(double right, double left, double splits, double weight) {
-    const double all = right + left;
-    return right * right * std::sqrt(right) + left * left * std::sqrt(left) + weight * splits * all * std::sqrt(all);
-}
-
 /// About the logarithm to base 2, by straight lines between powers.
 double rough_log2(std::size_t n) {
     const auto whole = static_cast<int>(std::bit_width(n)) - 1;
@@ -28,7 +21,7 @@ PartitionChoice::PartitionChoice(const Plan& plan, const CompileOptions& options
     switch (options.effort) {
         case Effort::Quick: break;
         case Effort::Normal:
-            trial_ = {64, 6};
+            trial_ = {64, 4};
             steps_a_line = 120;
             break;
         case Effort::Thorough:
@@ -47,6 +40,10 @@ PartitionChoice::PartitionChoice(const Plan& plan, const CompileOptions& options
                           static_cast<float>(nx * (line.y - centre_.y) - ny * (line.x - centre_.x))});
     }
     slots_.resize(plan.planes.size());
+    for (std::size_t n = 0; n < tabled; ++n) {
+        const auto segs = static_cast<double>(n);
+        powers_.push_back({segs * segs * std::sqrt(segs), segs * std::sqrt(segs)});
+    }
     steps_left_ = steps_a_line * plan.plane_of_line.size();
     usual_depth_ = rough_log2(plan.plane_of_line.size() / 2 + 2) + 0.4;  // a map has about one sub-sector for two lines
 }
@@ -56,6 +53,20 @@ std::size_t PartitionChoice::most_weighed(std::size_t pieces) const {
     constexpr std::size_t work = std::size_t{1} << 23, least = 32;
     const std::size_t wanted = std::max<std::size_t>(options_.candidates, 1);
     return std::min(wanted, std::max(least, work / std::max<std::size_t>(pieces, 1)));
+}
+
+PartitionChoice::Powers PartitionChoice::powers_of(float segs) const {
+    const auto n = static_cast<std::size_t>(segs);
+    if (n < tabled) return powers_[n];
+    const double all = segs, root = std::sqrt(all);
+    return {all * all * root, all * root};
+}
+
+/// Price of a partition line. The power 2.5 of both parts is between the sum of depths that they must have at least
+/// (n log n, too patient with small parts) and the larger part alone (which pays too many cuts for balance).
+double PartitionChoice::price_of(float right, float left, float splits) const {
+    return powers_of(right).of_part + powers_of(left).of_part +
+           options_.split_weight * splits * powers_of(right + left).of_splits;
 }
 
 PieceSet PartitionChoice::fill(std::span<const Piece> pieces) {
@@ -111,7 +122,7 @@ std::size_t PartitionChoice::rank(PieceSet set, std::span<Ranked> best) {
         const float right = counts_[k].right + candidate(k).right, left = counts_[k].left + candidate(k).left;
         if (right == 0 || left == 0) continue;
         const float splits = std::max(right + left - segs, 0.0F);
-        const double cost = price_of(right, left, splits, options_.split_weight);
+        const double cost = price_of(right, left, splits);
         if (found == best.size() && cost >= best[found - 1].cost) continue;
         if (found < best.size()) ++found;
         std::size_t at = found - 1;

@@ -42,7 +42,11 @@ private:
     struct Trial {
         std::size_t pieces = 0, lines = 1;
     };
-    static constexpr std::size_t most_tried = 16;
+    /// What a number of segs counts in a price: its power 2.5 as a part, 1.5 as the whole that splits are a share of.
+    struct Powers {
+        double of_part = 0, of_splits = 0;
+    };
+    static constexpr std::size_t most_tried = 16, tabled = 1024;
 
     const Plan& plan_;
     CompileOptions options_;
@@ -59,8 +63,11 @@ private:
     std::vector<FloatLine> candidate_lines_;
     std::vector<SideCounts> counts_;
     PieceColumns columns_;
+    std::vector<Powers> powers_;  ///< by number of segs
 
     [[nodiscard]] std::size_t most_weighed(std::size_t pieces) const;
+    [[nodiscard]] Powers powers_of(float segs) const;
+    [[nodiscard]] double price_of(float right, float left, float splits) const;
     PieceSet fill(std::span<const Piece> pieces);
     void find_candidates(PieceSet set);
     std::size_t rank(PieceSet set, std::span<Ranked> best);
