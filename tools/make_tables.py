@@ -226,6 +226,61 @@ def structure_page_of(path):
     return "\n".join(parts)
 
 
+LEVEL_FIGURES = "bench/results/level.csv"
+LEVEL_HEAD = """
+# Levels
+
+Made from `{figures}`. To renew it: `tools/measure_level.py && tools/make_tables.py`.
+
+All maps of a WAD, read, compiled and written, one thread; compilers take turns in one run, *seconds* are those that the
+processor worked (median of the rounds), *wall* those that went by. All figures are read from the lumps that each compiler
+wrote, by the same reader. *Segs* in classic lumps; *%*: more than the sides of lines that there were; *depth*: nodes above a
+sub-sector. Settings: {settings}.
+"""
+LEVEL_COLUMNS = ["compiler", "maps", "segs", "%", "nodes", "mean depth", "worst", "seconds", "wall"]
+
+
+def level_page_of(path):
+    """The sum over all WADs, a line a compiler; then a line a map, compilers side by side."""
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    kinds = list(dict.fromkeys((row["compiler"], row["settings"]) for row in rows))
+    parts = [LEVEL_HEAD.format(figures=LEVEL_FIGURES, settings="; ".join(f"`{c}` {s}" for c, s in kinds))]
+    total = lambda some, key: sum(float(row[key]) for row in some)  # noqa: E731
+    for machine in dict.fromkeys(row["machine"] for row in rows):
+        mine = [row for row in rows if row["machine"] == machine]
+        wads = ", ".join(dict.fromkeys(row["wad"] for row in mine))
+        lines = [f"## {wads}, {machine}, {mine[0]['commit']}, {mine[0]['date']}", "", line_of(LEVEL_COLUMNS),
+                 line_of(["---"] * len(LEVEL_COLUMNS))]
+        for kind in kinds:
+            of_kind = [row for row in mine if (row["compiler"], row["settings"]) == kind]
+            whole = [row for row in of_kind if row["map"] == "all"]
+            maps = [row for row in of_kind if row["map"] != "all"]
+            leaves = sum(float(row["mean_depth"]) * float(row["subsectors"]) for row in whole)
+            lines.append(line_of([
+                " ".join(kind) if kind[1] != "as it comes" else kind[0], str(len(maps)), f"{total(whole, 'segs'):.0f}",
+                f"{100 * total(whole, 'splits') / total(whole, 'sides'):.2f}", f"{total(whole, 'nodes'):.0f}",
+                f"{leaves / total(whole, 'subsectors'):.3f}", str(max(int(row["worst_depth"]) for row in whole)),
+                f"{total(whole, 'cpu_seconds'):.2f}", f"{total(whole, 'wall_seconds'):.2f}"]))
+        shown = [kind for kind in kinds if kind[1] in ("as it comes", "-n")]
+        names = [compiler for compiler, _ in shown]
+        lines += ["", "Map by map: segs (% more than sides), nodes, mean and worst depth, milliseconds of the processor for a WAD "
+                  "of that map alone.", "", line_of(["map", "lines", "sides", *names]),
+                  line_of(["---"] * (3 + len(names)))]
+        by_map = {}
+        for row in mine:
+            if row["map"] != "all":
+                by_map.setdefault((row["wad"], row["map"]), {})[row["compiler"], row["settings"]] = row
+        for (_, name), some in by_map.items():
+            first = next(iter(some.values()))
+            cells = [f"{row['segs']} ({100 * float(row['splits']) / float(row['sides']):.1f}), {row['nodes']}, "
+                     f"{float(row['mean_depth']):.2f}, {row['worst_depth']}, {1000 * float(row['cpu_seconds']):.1f}"
+                     for row in (some[kind] for kind in shown)]
+            lines.append(line_of([name, first["lines"], first["sides"], *cells]))
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
 def main(arguments):
     check = "--check" in arguments
     folders = [argument for argument in arguments if argument != "--check"]
@@ -240,6 +295,8 @@ def main(arguments):
         pages[root / size_chart.PICTURE] = size_chart.picture_of(root / size_chart.FIGURES)
     if (root / PAIR_FIGURES).is_file():
         text += pair_page_of(root / PAIR_FIGURES)
+    if (root / LEVEL_FIGURES).is_file():
+        text += level_page_of(root / LEVEL_FIGURES)
     if (root / QUERY_FIGURES).is_file():
         text += query_page_of(read_query_rows(root / QUERY_FIGURES))
     pages[page] = text

@@ -74,6 +74,20 @@ class MakeTables(unittest.TestCase):
         self.assertIn("| embree | 3000 (1.00–2000) |  |  | 2 | 12.5 |  | c0ffee | 2026-01-02 |", page)
         self.assertIn("\nembree: one ray.\n", page)
 
+    def test_levels_are_summed_and_stand_map_by_map(self):
+        root = self.write(row("fase", 2))
+        head = ("machine,date,commit,compiler,settings,wad,map,lines,sides,segs,splits,nodes,subsectors,mean_depth,worst_depth,"
+                "cpu_seconds,wall_seconds,bulge,area_error\n")
+        line = "Chip,2026-01-02,c0ffee,{},as it comes,{},{},100,200,{},{},40,50,{},9,0.5,0.75,1,0\n"
+        (root / make_tables.LEVEL_FIGURES).write_text(
+            head + line.format("fase", "a.wad", "all", 220, 20, 6) + line.format("fase", "b.wad", "all", 240, 40, 8)
+            + line.format("fase", "a.wad", "MAP01", 220, 20, 6) + line.format("zdbsp", "a.wad", "all", 250, 50, 7)
+            + line.format("zdbsp", "a.wad", "MAP01", 250, 50, 7), encoding="utf-8")
+        self.assertEqual(make_tables.main([str(root)]), 0)
+        page = (root / make_tables.PAGE).read_text(encoding="utf-8")
+        self.assertIn("| fase | 1 | 460 | 15.00 | 80 | 7.000 | 9 | 1.00 | 1.50 |", page)
+        self.assertIn("| MAP01 | 100 | 200 | 220 (10.0), 40, 6.00, 9, 500.0 | 250 (25.0), 40, 7.00, 9, 500.0 |", page)
+
 
 if __name__ == "__main__":
     unittest.main()

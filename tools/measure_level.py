@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Compiles all maps of WAD files with `fase level`, zdbsp and glbsp in turns and writes bench/results/level.csv.
+
+Usage: measure_level.py [--program build/release/fase] [--rounds 5] [--repository .] [WAD …]. Without WADs those of Debian's
+package freedoom. Peers are those found on PATH (Debian: zdbsp, glbsp). Whatever compiled a map, its figures are read from the
+lumps that it wrote, by `fase level --lumps nodes --check`. Then tools/make_tables.py.
+"""
+import argparse
+import csv
+import datetime
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from measure_structures import machine_name
+
+FREEDOOM = [Path("/usr/share/games/doom") / name for name in ("freedoom1.wad", "freedoom2.wad")]
+FIELDS = ["machine", "date", "commit", "compiler", "settings", "wad", "map", "lines", "sides", "segs", "splits", "nodes",
+          "subsectors", "mean_depth", "worst_depth", "cpu_seconds", "wall_seconds", "bulge", "area_error"]
+MAP_LUMPS = {"THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "NODES", "SECTORS", "REJECT", "BLOCKMAP"}
+
+
+def contenders(program):
+    """(compiler, settings, command line from input and output, or None when the program is not there)."""
+    def fase(*options):
+        return lambda wad, out: [program, "level", wad, "--all", "-o", out, "--threads", "1", *options]
+
+    found = [("fase", "as it comes", fase()),
+             ("fase", "--effort quick", fase("--effort", "quick")),
+             ("fase", "--weight 0 --effort thorough", fase("--weight", "0", "--effort", "thorough"))]
+    if zdbsp := shutil.which("zdbsp"):
+        found += [("zdbsp", "as it comes", lambda wad, out: [zdbsp, "-t", "-o", out, wad]),
+                  ("zdbsp", "-g", lambda wad, out: [zdbsp, "-t", "-g", "-o", out, wad])]
+    if glbsp := shutil.which("glbsp"):
+        found += [("glbsp", "-n", lambda wad, out: [glbsp, "-q", "-xp", "-n", wad, "-o", out])]
+    return found
+
+
+def run(command):
+    """Processor and wall seconds of a program that must succeed."""
+    begin = time.monotonic()
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise SystemExit(f"measure_level.py: error: {command[0]} ended with {process.returncode}")
+    return usage.ru_utime + usage.ru_stime, time.monotonic() - begin
+
+
+def figures_of(program, wad):
+    """By map, what the lumps of a WAD say."""
+    told = subprocess.run([program, "level", wad, "--all", "--lumps", "nodes", "--check", "--json"], check=False,
+                          stdout=subprocess.PIPE, text=True).stdout
+    return {row["map"]: row for row in json.loads(told)}
+
+
+def single_maps(wad, folder):
+    """Writes each map into a WAD of its own; (map, file) of each."""
+    data = wad.read_bytes()
+    count, directory = struct.unpack_from("<ii", data, 4)
+    lumps = []
+    for i in range(count):
+        at, size = struct.unpack_from("<ii", data, directory + 16 * i)
+        lumps.append((data[directory + 16 * i + 8:directory + 16 * i + 16], data[at:at + size]))
+    names = [name.split(b"\0")[0].decode("latin-1") for name, _ in lumps]
+    for i, name in enumerate(names):
+        if names[i + 1:i + 3] != ["THINGS", "LINEDEFS"]:
+            continue
+        end = i + 1
+        while end < count and names[end] in MAP_LUMPS:
+            end += 1
+        body, entries = b"", b""
+        for raw, content in lumps[i:end]:
+            entries += struct.pack("<ii", 12 + len(body), len(content)) + raw
+            body += content
+        file = Path(folder) / f"{wad.stem}-{name}.wad"
+        file.write_bytes(b"PWAD" + struct.pack("<ii", end - i, 12 + len(body)) + body + entries)
+        yield name, file
+
+
+def median(values):
+    return sorted(values)[len(values) // 2]
+
+
+def measure(program, wad, rounds, folder):
+    """One dictionary a contender and map, and one a contender for the whole file."""
+    found = contenders(program)
+    out = Path(folder) / "out.wad"
+    jobs = [("all", wad), *single_maps(wad, folder)]
+    for name, file in jobs:
+        seconds = [[] for _ in found]
+        figures = []
+        for turn in range(rounds if name == "all" else max(1, rounds // 2)):
+            for k, (_, _, command) in enumerate(found):
+                seconds[k].append(run(command(file, out)))
+                if turn == 0:
+                    figures.append(figures_of(program, out))
+        for k, (compiler, settings, _) in enumerate(found):
+            maps = figures[k].values()
+            row = {key: sum(one[key] for one in maps) for key in ("lines", "sides", "segs", "splits", "nodes", "subsectors")}
+            leaves = sum(one["mean_depth"] * one["subsectors"] for one in maps)
+            yield row | {"compiler": compiler, "settings": settings, "wad": wad.name, "map": name,
+                         "mean_depth": round(leaves / row["subsectors"], 4),
+                         "worst_depth": max(one["worst_depth"] for one in maps),
+                         "cpu_seconds": round(median([one[0] for one in seconds[k]]), 4),
+                         "wall_seconds": round(median([one[1] for one in seconds[k]]), 4),
+                         "bulge": max(one["bulge"] for one in maps), "area_error": max(one["area_error"] for one in maps)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default="build/release/fase")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--repository", default=Path(__file__).parent.parent, type=Path)
+    parser.add_argument("wads", nargs="*", type=Path)
+    options = parser.parse_args()
+    wads = options.wads or [wad for wad in FREEDOOM if wad.is_file()]
+    if not wads:
+        raise SystemExit("measure_level.py: error: found no WAD, need one, or Debian's package freedoom")
+    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
+                            stdout=subprocess.PIPE, text=True).stdout.strip()
+    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    with tempfile.TemporaryDirectory() as folder:
+        rows = [about | row for wad in wads for row in measure(str(options.program), wad, options.rounds, folder)]
+    with (options.repository / "bench/results/level.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
