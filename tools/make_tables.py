@@ -265,7 +265,7 @@ def level_page_of(path):
         shown = [kind for kind in kinds if kind[1] in ("as it comes", "-n")]
         names = [compiler for compiler, _ in shown]
         lines += ["", "Map by map: segs (% more than sides), nodes, mean and worst depth, milliseconds of the processor for a WAD "
-                  "of that map alone.", "", line_of(["map", "lines", "sides", *names]),
+                  "of that map alone, less those of starting the program.", "", line_of(["map", "lines", "sides", *names]),
                   line_of(["---"] * (3 + len(names)))]
         by_map = {}
         for row in mine:

@@ -22,7 +22,7 @@ struct LumpOptions {
 
 /// Puts a compiled map's tree in the place of the old one: VERTEXES, SEGS, SSECTORS and NODES, and GL lumps; the map's
 /// lumps are brought into their order. In the classic lumps cut points are rounded to whole units, so sub-sectors bulge
-/// by up to one; segs that come to have no length are left out where their sub-sector has others. An old REJECT or
+/// by up to one, and short segs may come to begin where they end. An old REJECT or
 /// BLOCKMAP stays; where there is none, a REJECT of zeros and a new BLOCKMAP are made. Old GL lumps are taken away.
 /// OutOfRange when numbers do not fit the format (65,536 vertices or segs, 32,768 nodes or sub-sectors); the WAD is
 /// then unchanged.

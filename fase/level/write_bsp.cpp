@@ -45,21 +45,10 @@ public:
             append_i16(vertices, whole(cut(v).x));
             append_i16(vertices, whole(cut(v).y));
         }
-        std::size_t first = 0, count = 0;
+        for (const Seg& wall : walls_) put_classic(segs, wall);
         for (std::size_t s = 0; s < bsp_.sub_sectors.size(); ++s) {
-            std::size_t written = 0;
-            for (std::size_t i = first_wall_[s]; i < first_wall_[s + 1]; ++i) {
-                const Seg& wall = walls_[i];
-                // The last one is kept in any case: programs of old want a seg in each sub-sector.
-                const bool is_last = i + 1 == first_wall_[s + 1] && written == 0;
-                if (!is_last && is_point_when_rounded(wall)) continue;
-                put_classic(segs, wall);
-                ++written;
-            }
-            append_u16(subs, static_cast<std::uint16_t>(written));
-            append_u16(subs, static_cast<std::uint16_t>(first));
-            first += written;
-            count += written;
+            append_u16(subs, static_cast<std::uint16_t>(first_wall_[s + 1] - first_wall_[s]));
+            append_u16(subs, static_cast<std::uint16_t>(first_wall_[s]));
         }
         out.push_back({"VERTEXES", std::move(vertices)});
         out.push_back({"SEGS", std::move(segs)});
@@ -182,10 +171,6 @@ private:
     }
     static void append_text(Bytes& out, std::string_view text) {
         for (const char c : text) out.push_back(static_cast<std::byte>(c));
-    }
-    [[nodiscard]] bool is_point_when_rounded(const Seg& seg) const {
-        const Point a = bsp_.vertices[seg.from], b = bsp_.vertices[seg.to];
-        return whole(a.x) == whole(b.x) && whole(a.y) == whole(b.y);
     }
     void put_classic(Bytes& out, const Seg& seg) const {
         const Line& line = map_.lines[seg.line];
