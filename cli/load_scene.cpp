@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "cli/level_scene.hpp"
 #include "cli/output.hpp"
 #include "fase/core/files.hpp"
 #include "fase/geometry/bounds.hpp"
@@ -28,14 +29,21 @@ bool is_trace(const std::string& path) {
 }  // namespace
 
 Result<scene::Scene> load_scene(const std::string& name, const scene::GenerateOptions& options) {
+    if (is_wad(name)) {
+        Result<LevelScene> level = load_level_scene(name, {}, options);
+        if (!level) return level.error();
+        return std::move(level->scene);
+    }
     if (exists(name)) return scene::read_gltf(name);
     std::string kinds;
     for (const scene::Generator& kind : scene::generators()) {
         if (kind.name == name) return scene::generate(kind.name, options);
         kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
     }
-    return Error{
-        Status::Io, printable(name, 200), "found no such file, need a .gltf or .glb file, or one of " + kinds, {}};
+    return Error{Status::Io,
+                 printable(name, 200),
+                 "found no such file, need a .gltf, .glb or .wad file, or one of " + kinds,
+                 {}};
 }
 
 Result<std::vector<Aabb>> load_boxes(const std::string& name) {

@@ -11,6 +11,7 @@
 
 #include "cli/arguments.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/level_scene.hpp"
 #include "cli/load_scene.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
@@ -50,6 +51,8 @@ Result<std::uint64_t> steps_of(const RunOptions& options, float time_step) {
 /// A world filled from a scene, and what is to be done with it.
 struct Run {
     World world;
+    std::vector<BodyId> bodies;
+    std::optional<LevelScene> level;  ///< without its scene
     std::optional<record::Recorder> recorder;
     std::optional<record::WorldTrace> trace;
     RunSummary summary;
@@ -77,6 +80,19 @@ Result<void> check_outputs(const RunOptions& options) {
     return {};
 }
 
+/// The scene of the options; that of a level stands in `level`, too.
+Result<scene::Scene> load(const RunOptions& options, std::optional<LevelScene>& level) {
+    if (!is_wad(options.scene)) {
+        if (!options.map.empty())
+            return Error{Status::BadArgument, "--map", "found a scene that is no WAD, need one", {}};
+        return load_scene(options.scene, {options.count, options.seed});
+    }
+    Result<LevelScene> loaded = load_level_scene(options.scene, options.map, {options.count, options.seed});
+    if (!loaded) return loaded.error();
+    level = *std::move(loaded);
+    return std::move(level->scene);
+}
+
 Result<Run> prepare(const RunOptions& options) {
     if (options.structure != "auto") {
         if (auto structure = broad::AnyStructure::named(options.structure); !structure) {
@@ -88,7 +104,8 @@ Result<Run> prepare(const RunOptions& options) {
         }
     }
     if (auto writable = check_outputs(options); !writable) return writable.error();
-    const Result<scene::Scene> scene = load_scene(options.scene, {options.count, options.seed});
+    std::optional<LevelScene> level;
+    const Result<scene::Scene> scene = load(options, level);
     if (!scene) return scene.error();
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const int threads = options.threads > 0 ? options.threads : cores;
@@ -101,7 +118,7 @@ Result<Run> prepare(const RunOptions& options) {
         error.where = options.scene + ": " + error.where;
         return error;
     }
-    Run run{*std::move(made), {}, {}, {}};
+    Run run{*std::move(made), *ids, std::move(level), {}, {}, {}};
     run.summary.scene = options.scene;
     run.summary.bodies = scene->bodies.size();
     run.summary.dynamic_bodies = scene::dynamic_bodies(*scene);
@@ -177,6 +194,7 @@ int run_scene(const RunOptions& options) {
     RunSummary& summary = run->summary;
     summary.hash = run->world.hash();
     summary.simulated_seconds = run->world.time();
+    if (run->level) summary.outside = bodies_outside(*run->level, run->world, run->bodies);
     if (summary.step_ms.empty()) {
         summary.last = run->world.last_report();
     }
@@ -189,7 +207,8 @@ int run_scene(const RunOptions& options) {
 void add_run(CLI::App& app, Start& start) {
     auto& run = start.options<RunOptions>();
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene; tell how it went; record it");
-    add_text(command, "SCENE", "A .gltf or .glb file, or a kind of 'fase generate'", run.scene)->required();
+    add_text(command, "SCENE", "A .gltf, .glb or .wad file, or a kind of 'fase generate'", run.scene)->required();
+    add_text(command, "--map", "Of a WAD: E1M1, MAP01 … (default: its first); bodies are thrown into it", run.map);
     CLI::Option* seconds = add_positive_number(command, "--seconds", "Simulated time (default 10)", most_seconds,
                                                [&run](double value) { run.seconds = value; });
     add_whole_number(command, "--steps", "Steps, instead of seconds", 0, most_steps, run.steps)->excludes(seconds);
@@ -200,8 +219,8 @@ void add_run(CLI::App& app, Start& start) {
     add_whole_number(command, "--sub-steps", "Solver's steps in a step (default: the scene's, else 4)", 1, 64,
                      run.sub_steps);
     command.add_flag("--no-sleep", run.keep_awake, "Nothing falls asleep");
-    add_count(command, "Of a kind: bodies, roughly", run.count);
-    add_seed(command, "Of a kind: another one of it", run.seed);
+    add_count(command, "Of a kind or a WAD: bodies, roughly", run.count);
+    add_seed(command, "Of a kind or a WAD: another one of it", run.seed);
     CLI::Option* record = add_text(command, "--record", "Write a recording for 'fase view'", run.record);
     command.add_flag("--contacts", run.record_contacts, "Record all contact points too")->needs(record);
     command.add_flag("--durable", run.durable, "Force each block of the recording to the disk (power loss)")
@@ -213,6 +232,7 @@ void add_run(CLI::App& app, Start& start) {
         "  fase run castle --seconds 12 --record castle.faserec\n"
         "  fase run scene.glb --steps 600 --threads 4 --json\n"
         "  fase run pile --count 500 --structure brute_force --trace pile.aabt\n"
+        "  fase run freedoom1.wad --map E1M1 --count 300 --record e1m1.faserec\n"
         "\nCtrl-C ends the run after the step in hand; what is recorded so far is kept.");
     start.on(command, [&run] { return run_scene(run); });
 }

@@ -17,9 +17,10 @@ class Start;
 inline constexpr std::uint64_t most_steps = 10'000'000;
 
 struct RunOptions {
-    std::string scene;                   ///< a glTF file, or a name of scene::generators()
-    std::size_t count = 0;               ///< of a generated scene: bodies, roughly; 0: its own number
-    std::uint64_t seed = 1;              ///< of a generated scene
+    std::string scene;                   ///< a glTF file, a WAD, or a name of scene::generators()
+    std::string map;                     ///< of a WAD; empty: its first
+    std::size_t count = 0;               ///< of a generated scene or a level: bodies, roughly; 0: its own number
+    std::uint64_t seed = 1;              ///< of a generated scene or a level
     std::optional<double> seconds;       ///< of simulated time; without both: 10 s
     std::optional<std::uint64_t> steps;  ///< instead of seconds
     std::string structure = "auto";      ///< the broad phase, by its name

@@ -76,9 +76,10 @@ std::string to_json(const RunSummary& s) {
     return text + fmt::format(
                       "\"seconds\": {:.9g}, \"structure\": {}, \"threads\": {}, \"contact_points\": {}, \"asleep\": "
                       "{}, \"world_bytes\": {}, \"frames\": {}, \"recording_bytes\": {}, \"trace_frames\": {}, "
-                      "\"trace_bytes\": {}}}\n",
+                      "\"trace_bytes\": {}, \"outside\": {}}}\n",
                       s.simulated_seconds, scene::quoted(s.last.structure), s.threads, s.peak_points, s.last.asleep,
-                      s.last.bytes, s.recorded_frames, s.recorded_bytes, s.traced_frames, s.traced_bytes);
+                      s.last.bytes, s.recorded_frames, s.recorded_bytes, s.traced_frames, s.traced_bytes,
+                      s.outside ? std::to_string(*s.outside) : "null");
 }
 
 std::string to_table(const RunSummary& s) {
@@ -104,6 +105,7 @@ std::string to_table(const RunSummary& s) {
     }
     line("contacts", fmt::format("{} at most, of {} points", s.peak_contacts, s.peak_points));
     line("awake", fmt::format("{} at the end, {} at most", s.last.awake, s.peak_awake));
+    if (s.outside) line("outside", fmt::format("{} bodies at the end", *s.outside));
     line("memory",
          fmt::format("{} at most, {} of them the world", bytes_text(peak_memory_bytes()), bytes_text(s.last.bytes)));
     line("hash", hex(s.hash));

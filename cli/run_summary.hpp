@@ -2,6 +2,7 @@
 /// What a run was like, summed up over its steps.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct RunSummary {
     // Of the end.
     double simulated_seconds = 0;
     std::uint64_t hash = 0;
+    std::optional<std::size_t> outside;  ///< of a level: bodies that are not in it
     std::uint64_t asked_steps = 0;
     int threads = 1;
     std::vector<std::string> warnings;  ///< each thing once

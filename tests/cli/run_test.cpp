@@ -99,7 +99,7 @@ TEST(Run, RecordingLeavesTheHashAsItIs) {
 
 TEST(Run, SceneAndStructureThatAreNotThereAreNamed) {
     expect_error_line(run_fase({"run", "no_such.glb"}), 3,
-                      "no_such.glb: found no such file, need a .gltf or .glb file, or one of castle");
+                      "no_such.glb: found no such file, need a .gltf, .glb or .wad file, or one of castle");
     expect_error_line(run_fase({"run", "stack", "--structure", "oak"}), 2,
                       "--structure: found \"oak\", need auto or one of brute_force");
     expect_error_line(run_fase({"run", "stack", "--seconds", "1e9"}), 2, "--seconds: found ");
