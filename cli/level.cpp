@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -10,7 +11,9 @@
 #include <optional>
 
 #include "cli/arguments.hpp"
+#include "cli/level_mesh.hpp"
 #include "cli/level_report.hpp"
+#include "cli/level_sight.hpp"
 #include "cli/output.hpp"
 #include "cli/start.hpp"
 #include "fase/atlas/png.hpp"
@@ -33,6 +36,7 @@ struct Wish {
     level::LumpOptions lumps;
     std::optional<level::BspLumps> read;
     std::optional<level::Point> point;
+    SightWish sight;
 };
 
 std::optional<double> number_in(std::string_view text) {
@@ -77,6 +81,10 @@ Result<Wish> wish_of(const LevelCommand& command) {
             return bad_option("--point", command.point, "X,Y, two numbers from -65536 to 65536");
         wish.point = level::Point{*x, *y};
     }
+    if (command.rays > 0 && !command.pvs)
+        return Error{Status::BadArgument, "--rays", "found no visible sets to hold against, need --pvs", {}};
+    wish.sight = {wish.point, command.pvs, command.heights ? level::Heights::Counted : level::Heights::Ignored,
+                  command.rays};
     const bool one_map = !command.svg.empty() || !command.png.empty() || !command.point.empty();
     if (command.all && !command.map.empty()) return bad_option("--all", command.map, "no MAP beside it");
     if (command.all && one_map)
@@ -113,7 +121,7 @@ struct Work {
     std::optional<Error> error;
 };
 
-void compile(const LevelCommand& command, const Wish& wish, const Wad& wad, Work& work) {
+void compile(const LevelCommand& command, const Wish& wish, const Wad& wad, TaskRunner& tasks, Work& work) {
     const auto since = [](auto start) {
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     };
@@ -139,6 +147,14 @@ void compile(const LevelCommand& command, const Wish& wish, const Wad& wad, Work
     work.row.sub_sectors = work.bsp->sub_sectors.size();
     if (command.check || command.stats) work.row.check = level::check_bsp(*work.map, *work.bsp);
     if (wish.point) work.row.place = place_of(*work.map, *work.bsp, *wish.point);
+    if (wish.point || command.pvs) {
+        Result<SightReport> sight = look_around(*work.map, *work.bsp, wish.sight, tasks);
+        if (!sight) {
+            work.error = sight.error();
+            return;
+        }
+        work.row.sight = *std::move(sight);
+    }
     if (command.all) work.map->things.clear();
 }
 
@@ -150,6 +166,15 @@ Result<void> draw(const LevelCommand& command, const Wish& wish, const Work& wor
                     work.row.stats.lines, work.row.stats.wall_segs, 100 * share_of_splits(work.row.stats),
                     work.row.nodes, work.row.sub_sectors, work.row.stats.mean_depth, work.row.stats.worst_depth);
     look.eye = wish.point;
+    if (work.row.sight) {
+        look.seen = work.row.sight->from_cell;
+        if (const auto& seen = work.row.sight->from_point) {
+            if (!command.pvs) look.seen = seen->sub_sectors;
+            for (std::size_t i = 0, first = 0; i < seen->part_ends.size(); first = seen->part_ends[i++])
+                look.sight.emplace_back(seen->corners.begin() + static_cast<std::ptrdiff_t>(first),
+                                        seen->corners.begin() + static_cast<std::ptrdiff_t>(seen->part_ends[i]));
+        }
+    }
     const level::Drawing drawing = level::draw_plan(*work.map, *work.bsp, look);
     if (!command.svg.empty()) {
         const std::string svg = level::svg_of(drawing);
@@ -191,7 +216,7 @@ Result<int> work_on(const LevelCommand& command) {
     const auto tasks = make_thread_runner(command.threads);
     tasks->run(works.size(), [&](std::size_t i) {
         const StandardFloats floats;
-        compile(command, *wish, *wad, works[i]);
+        compile(command, *wish, *wad, *tasks, works[i]);
     });
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     std::vector<LevelRow> rows;
@@ -210,13 +235,36 @@ Result<int> work_on(const LevelCommand& command) {
         if (auto written = write_wad(command, *wish, *wad, works); !written) return written.error();
     const std::string text = command.json ? to_json(rows, command.all) : to_text(rows, command.all, ms);
     std::fwrite(text.data(), 1, text.size(), stdout);
-    return command.check && !all_good(rows) ? exit_check_failed : exit_ok;
+    const bool hidden = std::any_of(rows.begin(), rows.end(),
+                                    [](const LevelRow& row) { return row.sight && row.sight->falsely_hidden > 0; });
+    return hidden || (command.check && !all_good(rows)) ? exit_check_failed : exit_ok;
+}
+
+/// What of the command there is for meshes.
+int run_mesh(const LevelCommand& command) {
+    const std::pair<const char*, bool> no_mesh[] = {{"MAP", !command.map.empty()},
+                                                    {"--all", command.all},
+                                                    {"--output", !command.output.empty()},
+                                                    {"--svg", !command.svg.empty()},
+                                                    {"--png", !command.png.empty()},
+                                                    {"--weight", !command.weight.empty()},
+                                                    {"--effort", !command.effort.empty()},
+                                                    {"--lumps", !command.lumps.empty()},
+                                                    {"--gl", command.gl},
+                                                    {"--extended", command.extended},
+                                                    {"--pvs", command.pvs},
+                                                    {"--heights", command.heights},
+                                                    {"--check", command.check}};
+    for (const auto& [option, given] : no_mesh)
+        if (given) return refuse({Status::BadArgument, option, "found a mesh, need a WAD", {}});
+    return run_level_mesh({command.file, command.point, command.rays, command.threads, command.json});
 }
 
 }  // namespace
 
 int run_level(const LevelCommand& command) {
     try {
+        if (is_mesh_name(command.file)) return run_mesh(command);
         const Result<int> code = work_on(command);
         return code ? *code : refuse(code.error());
     } catch (const std::bad_alloc&) {
@@ -227,7 +275,9 @@ int run_level(const LevelCommand& command) {
 void add_level(CLI::App& app, Start& start) {
     auto& options = start.options<LevelCommand>();
     CLI::App& command = *app.add_subcommand("level", "Compile a level of a Doom WAD into a BSP tree");
-    add_text(command, "WAD", "A .wad file", options.file)->required();
+    add_text(command, "FILE", "A .wad file; or a mesh (.obj, .gltf, .glb), for a tree of planes over its triangles",
+             options.file)
+        ->required();
     add_text(command, "MAP", "E1M1, MAP01 …; may be left out when the file has one", options.map);
     command.add_flag("--all", options.all, "Every map of the file");
     add_text(command, "-o,--output", "Write the WAD with the new trees", options.output);
@@ -237,8 +287,15 @@ void add_level(CLI::App& app, Start& start) {
     add_text(command, "--effort", "quick, normal (default) or thorough", options.effort);
     add_text(command, "--svg", "Draw the plan", options.svg);
     add_text(command, "--png", "Draw the plan as pixels", options.png);
-    add_text(command, "--point", "X,Y: tell the sub-sector and sector there, mark them on the plan", options.point);
+    add_text(
+        command, "--point",
+        "X,Y: tell the sub-sector and sector there and what they see; lit on the plan. Of a mesh X,Y,Z: is it solid?",
+        options.point);
     add_text(command, "--lumps", "nodes or gl: read the tree that is in the file instead of making one", options.lumps);
+    command.add_flag("--pvs", options.pvs, "Find what sub-sectors see of each other");
+    command.add_flag("--heights", options.heights, "Floors, ceilings and closed doors hide, too");
+    add_whole_number(command, "--rays", "With --pvs, or of a mesh: cast rays at random, and check what they meet", 1,
+                     100'000'000, options.rays);
     command.add_flag("--stats", options.stats, "Tell more: minisegs, areas, how exact all is");
     command.add_flag("--check", options.check,
                      "Hold the tree against the map: sub-sectors convex, lines covered, areas");
@@ -250,9 +307,11 @@ void add_level(CLI::App& app, Start& start) {
         "  fase level freedoom2.wad --all -o compiled.wad --gl\n"
         "  fase level map.wad --weight 0 --effort thorough --json\n"
         "  fase level compiled.wad MAP01 --lumps gl --check\n"
+        "  fase level freedoom1.wad E1M1 --pvs --rays 1000000 --point 1056,-3616 --svg seen.svg\n"
+        "  fase level house.obj --rays 100000\n"
         "\nSegs are counted as in the classic lumps; splits are segs less sides of lines. Depth: nodes above a\n"
         "sub-sector. The time is that of compiling, without reading and writing.\n"
-        "Exit code 1: --check found a tree that is not what it should be.");
+        "Exit code 1: --check found a tree that is not what it should be, or rays prove something wrong.");
     start.on(command, [&options] { return run_level(options); });
 }
 

@@ -33,6 +33,7 @@ std::string json_of(const LevelRow& row) {
             place->point.x, place->point.y, place->inside, place->sub_sector, place->sector, place->floor,
             place->ceiling);
     }
+    if (row.sight) text += to_json(*row.sight);
     return text + "}";
 }
 
@@ -60,6 +61,7 @@ std::string text_of(const LevelRow& row) {
                             place->point.y, place->inside ? "in" : "outside, behind a wall of", place->sub_sector,
                             place->sector, place->floor, place->ceiling);
     }
+    if (row.sight) text += to_text(*row.sight);
     return text;
 }
 
@@ -135,7 +137,10 @@ std::string to_text(const std::vector<LevelRow>& rows, bool all, double ms) {
     sum.map = "all";
     sum.stats.mean_depth = sum.sub_sectors == 0 ? 0 : depth / static_cast<double>(sum.sub_sectors);
     add(sum, "");
-    return table.text() + fmt::format("{} map{} in {:.0f} ms\n", rows.size(), rows.size() == 1 ? "" : "s", ms);
+    std::string sights;
+    for (const LevelRow& row : rows)
+        if (row.sight) sights += printable(row.map) + "\n" + to_text(*row.sight);
+    return table.text() + sights + fmt::format("{} map{} in {:.0f} ms\n", rows.size(), rows.size() == 1 ? "" : "s", ms);
 }
 
 }  // namespace fase::cli

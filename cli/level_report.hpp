@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/level_sight.hpp"
 #include "fase/level/check_bsp.hpp"
 
 namespace fase::cli {
@@ -25,6 +26,7 @@ struct LevelRow {
     double ms = 0;
     std::optional<level::BspCheck> check;
     std::optional<PlanPlace> place;
+    std::optional<SightReport> sight;
 };
 
 /// Splits as a share of the sides.

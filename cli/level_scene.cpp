@@ -66,7 +66,7 @@ void add_level(const level::LevelSolids& solids, scene::Scene& scene) {
     }
     const auto show = [&](const std::map<int, TriangleMesh>& meshes, const char* name, Vec3 tint) {
         for (const auto& [light, mesh] : meshes) {
-            const float bright = 0.08f + 0.05f * static_cast<float>(light);
+            const float bright = 0.05f + 0.035f * static_cast<float>(light);
             body.visuals.push_back({static_cast<std::uint32_t>(scene.meshes.size()),
                                     {},
                                     Mat3::identity(),
@@ -103,8 +103,10 @@ public:
             const scene::Stuff stuff{
                 "thrown", {colours[kind].x, colours[kind].y, colours[kind].z, 1}, 500, {.friction = 0.5f}};
             const Vec3 velocity = scene::any_direction(random_) * random_.between(0, 4);
-            builder_.add(shapes_[kind], stuff,
-                         {.position = *place, .rotation = scene::any_rotation(random_), .linear_velocity = velocity});
+            scene::Body& body = builder_.add(
+                shapes_[kind], stuff,
+                {.position = *place, .rotation = scene::any_rotation(random_), .linear_velocity = velocity});
+            body.def.angular_damping = 0.5f;  // what rolls comes to rest
         }
         return done;
     }
