@@ -50,10 +50,9 @@ std::uint32_t PolygonBsp::leaf_at(Vec3d point) const {
 bool PolygonBsp::solid(Vec3d point) const {
     if (!is_finite(point)) return false;
     for (int axis = 0; axis < 3; ++axis)
-        if (point[axis] < lo_[axis] || point[axis] > hi_[axis])
-            return stats_.closed ? false : winding(point, false) != 0;
+        if (point[axis] < lo_[axis] || point[axis] > hi_[axis]) return !rim_.empty() && winding(point) != 0;
     const Leaf& leaf = leaves_[leaf_at(point)];
-    if (leaf.inside == Inside::Mixed) return winding_number(mesh_, point) != 0;
+    if (leaf.inside == Inside::Mixed) return winding(point) != 0;
     return leaf.inside == Inside::Solid;
 }
 
@@ -120,12 +119,12 @@ std::optional<PolygonHit> PolygonBsp::cast_ray(const Ray& ray) const {
     return nearest;
 }
 
-int PolygonBsp::winding(Vec3d point, bool closed) const {
-    if (!closed) return winding_number(mesh_, point);
-    // Of a closed mesh any ray counts the way out, unless it passes too near an edge to tell.
-    constexpr Vec3d ways[] = {{0.5477, 0.7303, 0.4083}, {-0.6396, 0.2741, 0.7182}, {0.3015, -0.9045, 0.3017}};
+int PolygonBsp::winding(Vec3d point) const {
+    // Any ray counts the way out, unless it passes too near an edge to tell.
+    constexpr Vec3d ways[] = {{5, 7, 4}, {-6, 3, 7}, {3, -9, 2}};
     std::vector<std::uint32_t> met;
-    for (const Vec3d& way : ways) {
+    for (const Vec3d& any_way : ways) {
+        const Vec3d way = normalized(any_way);
         int sum = 0;
         bool clear = true;
         met.clear();
@@ -144,7 +143,7 @@ int PolygonBsp::winding(Vec3d point, bool closed) const {
             clear = clear && hit->margin > 1e-6 && facing * facing > 1e-6 * length_squared(normal);
             sum += hit->into ? -1 : 1;
         }
-        if (clear) return sum;
+        if (clear) return sum + rim_winding(rim_, point, -way);
     }
     return winding_number(mesh_, point);
 }

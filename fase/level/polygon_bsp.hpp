@@ -40,7 +40,7 @@ struct PolygonBspStats {
     std::size_t solid = 0, empty = 0, mixed = 0;  ///< leaves; mixed: a limit was reached, polygons are left inside
     double mean_depth = 0;                        ///< nodes above a leaf, mean of all leaves
     std::size_t worst_depth = 0;
-    bool closed = false;  ///< see is_closed()
+    bool closed = false;  ///< rim_of() the mesh is empty
     std::size_t bytes = 0;
 };
 
@@ -91,8 +91,10 @@ public:
     /// Allocation failures throw.
     static Result<PolygonBsp> build(TriangleMesh mesh, const PolygonBspOptions& options = {});
 
-    /// Is the place solid? O(depth); in a mixed leaf O(triangles).
+    /// Is the place solid? O(depth); in a mixed leaf, and outside the box around an open mesh, as winding().
     [[nodiscard]] bool solid(Vec3d point) const;
+    /// winding_number() of the mesh, by a ray through the tree and the mesh's rim, where it has one.
+    [[nodiscard]] int winding(Vec3d point) const;
     /// The first triangle on the ray, from either side; equal to cast_ray_at_all() to the bit.
     [[nodiscard]] std::optional<PolygonHit> cast_ray(const Ray& ray) const;
     /// Calls visit() for pieces and leaves such that whatever comes later hides nothing of what came before, as seen
@@ -116,13 +118,13 @@ private:
     /// Calls test(triangle) for all that a ray may meet before `most` metres; test() answers how far the walk need go.
     template <class Test> void walk_ray(Vec3d origin, Vec3d direction, double most, Test&& test) const;
     [[nodiscard]] std::uint32_t leaf_at(Vec3d point) const;
-    [[nodiscard]] int winding(Vec3d point, bool closed) const;
 
     TriangleMesh mesh_;
     std::vector<Node> nodes_;  ///< the root first, parents before children
     std::vector<Leaf> leaves_;
     std::vector<Piece> pieces_;
     std::vector<Vec3d> corners_;
+    std::vector<RimEdge> rim_;
     std::vector<std::uint32_t> lists_;  ///< indices of pieces, by node and leaf
     Vec3d lo_, hi_;                     ///< the box around the mesh
     double thickness_ = 0;

@@ -54,7 +54,7 @@ std::optional<Error> mistake_in(const TriangleMesh& mesh, const PolygonBspOption
     return std::nullopt;
 }
 
-/// Lengths of a row of corners on either side of a plane.
+/// Where a row of corners lies, seen from a plane.
 enum class Lie : std::uint8_t { Behind, Before, On, Astride };
 
 }  // namespace
@@ -308,12 +308,13 @@ private:
 
     void mark_leaves() {
         PolygonBspStats& stats = tree_.stats_;
-        stats.closed = is_closed(tree_.mesh_);
+        tree_.rim_ = rim_of(tree_.mesh_);
+        stats.closed = tree_.rim_.empty();
         const auto mark = [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 PolygonBsp::Leaf& leaf = tree_.leaves_[i];
                 if (leaf.inside == Inside::Mixed || leaf_parents_[i] == no_parent) continue;
-                const int winding = tree_.winding(place_in(static_cast<std::uint32_t>(i)), stats.closed);
+                const int winding = tree_.winding(place_in(static_cast<std::uint32_t>(i)));
                 leaf.inside = winding != 0 ? Inside::Solid : Inside::Empty;
             }
         };
@@ -363,8 +364,8 @@ private:
         const TriangleMesh& mesh = tree_.mesh_;
         stats.bytes = tree_.nodes_.size() * sizeof(Node) + tree_.leaves_.size() * sizeof(PolygonBsp::Leaf) +
                       tree_.pieces_.size() * (sizeof(Piece) + sizeof(std::uint32_t)) +
-                      tree_.corners_.size() * sizeof(Vec3d) + mesh.positions.size() * sizeof(Vec3) +
-                      mesh.indices.size() * sizeof(std::uint32_t);
+                      tree_.corners_.size() * sizeof(Vec3d) + tree_.rim_.size() * sizeof(RimEdge) +
+                      mesh.positions.size() * sizeof(Vec3) + mesh.indices.size() * sizeof(std::uint32_t);
     }
 };
 

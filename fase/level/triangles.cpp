@@ -18,28 +18,56 @@ std::optional<PolygonHit> cast_ray_at_all(const TriangleMesh& mesh, const Ray& r
     return nearest;
 }
 
+namespace {
+
+/// Sums angles as a product of complex numbers, and counts the whole turns.
+class AngleSum {
+public:
+    /// Adds the angle of (x, y), of any length.
+    void add(double x, double y) {
+        const double size = std::sqrt(x * x + y * y);
+        if (!(size > 0)) return;
+        const double re = (re_ * x - im_ * y) / size, im = (re_ * y + im_ * x) / size;
+        if (im_ >= 0 && y >= 0 && im < 0) ++turns_;
+        if (im_ < 0 && y < 0 && im >= 0) --turns_;
+        const double stretch = 1.5 - 0.5 * (re * re + im * im);  // keeps the length at 1
+        re_ = re * stretch;
+        im_ = im * stretch;
+    }
+    /// The sum, rounded to whole turns.
+    [[nodiscard]] int turns() const { return turns_; }
+
+private:
+    double re_ = 1, im_ = 0;
+    int turns_ = 0;
+};
+
+}  // namespace
+
 int winding_number(const TriangleMesh& mesh, Vec3d point) {
-    double re = 1, im = 0;  // half the angles seen so far, as a unit vector
-    int turns = 0;
+    AngleSum sum;  // of half the solid angles
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const TriangleCorners corners = corners_of(mesh, t);
         const Vec3d a = corners[0] - point, b = corners[1] - point, c = corners[2] - point;
         const double la = length(a), lb = length(b), lc = length(c);
-        const double y = dot(a, cross(b, c));
-        const double x = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        const double size = std::sqrt(x * x + y * y);
-        if (!(size > 0)) continue;
-        const double next_re = (re * x - im * y) / size, next_im = (re * y + im * x) / size;
-        if (im >= 0 && y >= 0 && next_im < 0) ++turns;
-        if (im < 0 && y < 0 && next_im >= 0) --turns;
-        const double stretch = 1.5 - 0.5 * (next_re * next_re + next_im * next_im);  // keeps the length at 1
-        re = next_re * stretch;
-        im = next_im * stretch;
+        sum.add(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb, dot(a, cross(b, c)));
     }
-    return turns;
+    return sum.turns();
 }
 
-bool is_closed(const TriangleMesh& mesh) {
+int rim_winding(std::span<const RimEdge> rim, Vec3d point, Vec3d way) {
+    AngleSum sum;
+    for (const RimEdge& edge : rim) {
+        const Vec3d a = edge.from - point, b = edge.to - point;
+        const double la = length(a), lb = length(b);
+        // The third corner lies at the end of the way, endlessly far.
+        const double x = la * lb + dot(a, b) + dot(b, way) * la + dot(way, a) * lb, y = dot(a, cross(b, way));
+        for (int i = 0; i < edge.times; ++i) sum.add(x, y);
+    }
+    return sum.turns();
+}
+
+std::vector<RimEdge> rim_of(const TriangleMesh& mesh) {
     // Corners by coordinates: the first of those that are equal stands for all.
     std::vector<std::uint32_t> order(mesh.positions.size()), same(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -65,15 +93,18 @@ bool is_closed(const TriangleMesh& mesh) {
     }
     std::sort(edges.begin(), edges.end(),
               [](const Edge& a, const Edge& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
+    std::vector<RimEdge> rim;
     for (std::size_t i = 0; i < edges.size();) {
         int sum = 0;
         std::size_t end = i;
         for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
             sum += edges[end].way;
-        if (sum != 0) return false;
+        const Vec3d low = to_double(mesh.positions[edges[i].low]), high = to_double(mesh.positions[edges[i].high]);
+        if (sum > 0) rim.push_back({low, high, sum});
+        if (sum < 0) rim.push_back({high, low, -sum});
         i = end;
     }
-    return true;
+    return rim;
 }
 
 }  // namespace fase::level

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "fase/geometry/mesh.hpp"
 #include "fase/geometry/ray.hpp"
@@ -63,7 +65,16 @@ struct PolygonHit {
 /// numbers with the turns counted, so that no arc tangent is needed.
 [[nodiscard]] int winding_number(const TriangleMesh& mesh, Vec3d point);
 
-/// Does each edge have as many triangles on its one side as on its other? Corners with equal coordinates are one.
-[[nodiscard]] bool is_closed(const TriangleMesh& mesh);
+/// An edge with more triangles on its one side than on its other.
+struct RimEdge {
+    Vec3d from, to;  ///< as its triangles go
+    int times = 1;   ///< by how many more; above 0
+};
+/// All of them, corners with equal coordinates being one: none when the mesh is closed.
+[[nodiscard]] std::vector<RimEdge> rim_of(const TriangleMesh& mesh);
+
+/// What is to be added to the number of times that a ray against `way` (unit) leaves the mesh less those that it enters
+/// it, to get winding_number() of its origin: the rim alone, stretched along `way` without end, tells. O(rim).
+[[nodiscard]] int rim_winding(std::span<const RimEdge> rim, Vec3d point, Vec3d way);
 
 }  // namespace fase::level

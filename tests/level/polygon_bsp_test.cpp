@@ -275,6 +275,24 @@ TEST(PolygonBsp, GivesOpenMeshesTheInsideThatIsSeenFromIt) {
     EXPECT_FALSE(tree.solid({0.5, 0.5, -5}));
 }
 
+TEST(PolygonBsp, WindsAroundPlacesAsAllSolidAnglesSay) {
+    auto meshes = closed_meshes();
+    for (Named& one : given_meshes()) meshes.push_back(std::move(one));
+    TriangleMesh half = triangles(Sphere{1}, 12);
+    half.indices.resize(half.indices.size() / 6 * 3);
+    meshes.push_back({"half a sphere", half});
+    for (const Named& one : meshes) {
+        const PolygonBsp tree = built(one.mesh);
+        if (one.mesh.indices.size() == 3) continue;  // flat: every place is half around it
+        Random random(17);
+        const Box3 box = box_of(one.mesh, 0.2);
+        for (int i = 0; i < 300; ++i) {
+            const Vec3d p = place_in(box, random);
+            EXPECT_EQ(tree.winding(p), winding_number(one.mesh, p)) << one.name;
+        }
+    }
+}
+
 TEST(PolygonBsp, IsTheSameTreeForAnyNumberOfThreads) {
     const TriangleMesh mesh = torus(2, 0.75f, 40, 16);
     const auto runner = make_thread_runner(2);
@@ -340,6 +358,17 @@ TEST(WindingNumber, CountsTurnsOfNestedAndTurnedMeshes) {
     EXPECT_EQ(winding_number(nested, {0, 2.5, 0}), 1);
     EXPECT_EQ(winding_number(nested, {0, 4, 0}), 0);
     EXPECT_EQ(winding_number(turned(nested), {0.1, 0.2, 0.3}), -3);
+}
+
+TEST(Rim, IsNoneOfClosedMeshesAndTheHoleOfOthers) {
+    for (const Named& one : closed_meshes()) EXPECT_TRUE(rim_of(one.mesh).empty()) << one.name;
+    TriangleMesh open = triangles(Box{{1, 1, 1}});
+    open.indices.resize(open.indices.size() - 3);
+    EXPECT_EQ(rim_of(open).size(), 3u);
+    append(open, open);
+    const auto twice = rim_of(open);
+    ASSERT_EQ(twice.size(), 3u);
+    EXPECT_EQ(twice[0].times, 2);
 }
 
 }  // namespace
