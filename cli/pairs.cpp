@@ -14,13 +14,15 @@
 #include "cli/progress.hpp"
 #include "cli/start.hpp"
 #include "cli/table.hpp"
+#include "fase/core/simd.hpp"
 #include "fase/scene/json.hpp"
 
 namespace fase::cli {
 namespace {
 
 std::string json_of(const PairFigures& row) {
-    std::string text = fmt::format("{{\"structure\": {}, \"threads\": {}, ", scene::quoted(row.structure), row.threads);
+    std::string text = fmt::format("{{\"structure\": {}, \"threads\": {}, \"simd\": {}, ", scene::quoted(row.structure),
+                                   row.threads, scene::quoted(simd_level()));
     if (row.skipped.empty()) {
         text += fmt::format(
             "\"frames\": {}, \"build_ms\": {:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": "
@@ -85,6 +87,11 @@ std::string head_of(const record::TraceReader& trace, const TraceSurvey& seen, i
 }  // namespace
 
 int run_pairs(const PairsOptions& options) {
+    if (Result<void> limited = limit_simd(options.simd); !limited) {
+        Error error = limited.error();
+        error.where = "--simd";
+        return refuse(error);
+    }
     const Result<std::vector<StructureChoice>> choices = structures_named(options.structure);
     if (!choices) return refuse(choices.error());
     Result<record::TraceReader> trace = record::TraceReader::open(options.trace);
@@ -128,6 +135,7 @@ void add_pairs(CLI::App& app, Start& start) {
         ->required();
     add_structure(command, "auto (default), all, ", pairs.structure);
     add_threads(command, "0: all cores (default 1)", 0, pairs.threads);
+    add_text(command, "--simd", "Widest instructions to use: " + simd_levels() + " (default best)", pairs.simd);
     add_whole_number(command, "--frames", "The first N frames (default: all)", 1, 0xffffffff, pairs.frames);
     add_positive_number(command, "--limit", "Seconds; of all, those that take longer are skipped (default 60)", 1e6,
                         [&pairs](double value) { pairs.limit = value; });

@@ -14,6 +14,7 @@ class Start;
 struct PairsOptions {
     std::string trace;               ///< an AABT file
     std::string structure = "auto";  ///< a name, auto, or all
+    std::string simd = "best";       ///< the widest instructions that are used
     int threads = 1;                 ///< 0: all cores
     std::uint64_t frames = 0;        ///< the first so many; 0: all
     double limit = 60;               ///< s; with `all`: structures that take longer are skipped, and said to be
