@@ -130,6 +130,18 @@ void AnyStructure::commit() {
     std::visit([](auto& s) { s.commit(); }, structure_);
 }
 
+void AnyStructure::commit(TaskRunner& tasks) {
+    std::visit(
+        [&]<class S>(S& s) {
+            if constexpr (CommitsInParallel<S>) {
+                s.commit(tasks);
+            } else {
+                s.commit();
+            }
+        },
+        structure_);
+}
+
 void AnyStructure::find_pairs(std::vector<Pair>& out) const {
     std::visit([&](const auto& s) { broad::find_pairs(s, out); }, structure_);
 }

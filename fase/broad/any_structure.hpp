@@ -44,6 +44,8 @@ public:
     void become(AnyStructure other);
     /// To be called after changes and before anything const.
     void commit();
+    /// The same, shared among threads by structures that can; it makes no difference to what is stored.
+    void commit(TaskRunner& tasks);
 
     /// Appends each pair of stored boxes once, smaller proxy first; sort them for an order that does not depend on the
     /// structure.

@@ -16,6 +16,12 @@ concept FindsOwnPairsInParallel = Structure<S> && requires(const S& c, TaskRunne
     c.find_pairs(tasks, out);
 };
 
+/// A structure that shares commit() among threads: what it answers afterwards, and the order, do not depend on them.
+template <class S>
+concept CommitsInParallel = Structure<S> && requires(S s, TaskRunner& tasks) {
+    s.commit(tasks);
+};
+
 /// A structure that finds the pairs with another of its kind faster than one query a box can.
 template <class S>
 concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& other, std::vector<Pair>& out) {

@@ -90,8 +90,8 @@ void RowGrid::clear() {
     resting_.clear();
 }
 
-void RowGrid::commit() {
-    moving_.commit(settings_);
+void RowGrid::commit(TaskRunner* tasks) {
+    moving_.commit(settings_, tasks);
     resting_.settle(settings_);
 }
 

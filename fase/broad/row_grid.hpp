@@ -36,7 +36,9 @@ public:
     void set_awake(Proxy p, bool awake);
     [[nodiscard]] bool is_awake(Proxy p) const { return moving_.holds(p); }
     void clear();
-    void commit();
+    void commit() { commit(nullptr); }
+    /// The same by several threads; what is found afterwards, and its order, are the same too.
+    void commit(TaskRunner& tasks) { commit(&tasks); }
     /// Replaces all that is stored by boxes that are awake, and commits.
     void build(std::span<const Move> boxes);
     /// The same for boxes that are likely to stay where they are: they stand in blocks from the beginning.
@@ -75,6 +77,7 @@ private:
     RowPart moving_, resting_;
 
     [[nodiscard]] RowPart& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
+    void commit(TaskRunner* tasks);
     void find(bool resting_too, std::vector<Pair>& out) const;
     void find_odd(bool resting_too, std::vector<Pair>& out) const;
     template <class F> void for_each_set(F&& f) const {

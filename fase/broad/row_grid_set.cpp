@@ -18,6 +18,14 @@ std::uint32_t ordered_bits(float v) {
     return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
+constexpr std::size_t most_parts = 4;      // each counts in a table of its own
+constexpr std::size_t part_least = 16384;  // boxes of a part
+
+template <class F> void for_ranges(TaskRunner* tasks, std::size_t count, std::size_t grain, const F& body) {
+    if (tasks != nullptr) return parallel_ranges(*tasks, count, grain, body);
+    for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(count, begin + grain));
+}
+
 /// Sorts by bits 11k..11k+10 of a key, keeping the order of equals.
 template <class Item, class Key> void sort_by_digit(std::vector<Item>& items, std::vector<Item>& scratch, Key&& key) {
     std::array<std::uint32_t, 2048> counts{};
@@ -64,47 +72,108 @@ std::array<std::size_t, 6> RowSet::column_places() const {
     return places;
 }
 
-bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings) {
+bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
     count_ = boxes.size();
     dead_ = 0;
     rows_.clear();
     make_room();
     const bool other_count = count_ > fitted_count_ + fitted_count_ / 4 || count_ < fitted_count_ - fitted_count_ / 4;
     if (stale_ || other_count || ++age_ >= settings.fit_lasts) fit(boxes, settings);
+    const std::size_t threads = tasks == nullptr ? 1 : static_cast<std::size_t>(tasks->threads());
+    parts_ = std::max<std::size_t>(std::min({threads, most_parts, count_ / part_least}), 1);
+    if (parts_ == 1) tasks = nullptr;
     if (count_ == 0) return true;
-
-    float* const keys = columns_.data();  // until the boxes come there
-    for (;;) {
-        table_.assign(fit_.table, 0);
-        const row_grid::Counted counted = row_grid::count_cells(boxes, fit_, keys, table_.data());
-        if (counted.odd) {
-            *this = {};
-            return false;
-        }
-        if (counted.outside <= count_ / 16 || age_ == 0) break;
-        fit(boxes, settings);
+    if (!count(boxes, settings, tasks)) {
+        *this = {};
+        return false;
     }
-
-    // A cell's counter stands one place behind the cell; once all boxes are placed, it has become where the next
-    // begins.
-    std::uint32_t sum = 0;
-    for (std::uint32_t& counter : table_) sum += std::exchange(counter, sum);
-    for (std::size_t i = 0; i < count_; ++i)
-        proxies_[table_[std::bit_cast<std::uint32_t>(keys[i])]++] = static_cast<std::uint32_t>(i);
-
-    std::array<float*, 6> columns;
-    const std::array<std::size_t, 6> places = column_places();
-    for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
-    for (std::size_t k = 0; k < fit_.levels.size(); ++k) {
-        RowLevel& level = fit_.levels[k];
+    sum_counts(tasks);
+    place(tasks);
+    for (RowLevel& level : fit_.levels) {
         const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
-        level.first = table_[level.table];
-        level.count = table_[level.table + cells] - level.first;
+        level.first = table()[level.table];
+        level.count = table()[level.table + cells] - level.first;
         if (level.listed) sort_listed(boxes, level);
-        level.reach = row_grid::gather_boxes(boxes, level.first, level.first + level.count, columns, proxies_.data());
+        gather(boxes, level, tasks);
     }
     if (fit_.levels.back().count > count_ / 16) stale_ = age_ != 0;
     return true;
+}
+
+/// Counts the boxes of each cell, part by part; keys stand where the first column will be. False: one is not ordinary.
+bool RowSet::count(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
+    for (;;) {
+        table_.resize(parts_ * fit_.table);
+        std::array<row_grid::Counted, most_parts> counted;
+        for_ranges(tasks, count_, part_length(), [&](std::size_t begin, std::size_t end) {
+            const std::size_t part = begin / part_length();
+            std::uint32_t* const mine = table_.data() + part * fit_.table;
+            std::fill(mine, mine + fit_.table, 0);
+            const std::span<const Move> some = boxes.subspan(begin, end - begin);
+            counted[part] = row_grid::count_cells(some, fit_, columns_.data() + begin, mine);
+        });
+        std::size_t outside = 0;
+        for (const row_grid::Counted& part : counted) {
+            if (part.odd) return false;
+            outside += part.outside;
+        }
+        if (outside <= count_ / 16 || age_ == 0) return true;
+        fit(boxes, settings);
+    }
+}
+
+/// A cell's counter stands one place behind the cell. It becomes where the boxes of the part go; once all are placed,
+/// where those of the next part begin and, of the last part, where the next cell does.
+void RowSet::sum_counts(TaskRunner* tasks) {
+    std::uint32_t* const counters = table_.data();
+    const std::size_t length = fit_.table, parts = parts_;
+    const auto sum = [=](std::size_t begin, std::size_t end, std::uint32_t first) {
+        for (std::size_t k = begin; k < end; ++k)
+            for (std::size_t at = k; at < parts * length; at += length) first += std::exchange(counters[at], first);
+    };
+    if (tasks == nullptr) {
+        std::uint32_t before = 0;
+        for (std::size_t k = 0; k < length; ++k) before += std::exchange(counters[k], before);
+        return;
+    }
+    constexpr std::size_t grain = 1 << 15;
+    sums_.assign(length / grain + 1, 0);
+    for_ranges(tasks, length, grain, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t all = 0;
+        for (std::size_t part = 0; part < parts; ++part)
+            for (std::size_t k = begin; k < end; ++k) all += counters[part * length + k];
+        sums_[begin / grain] = all;
+    });
+    std::uint32_t before = 0;
+    for (std::uint32_t& block : sums_) before += std::exchange(block, before);
+    for_ranges(tasks, length, grain,
+               [&](std::size_t begin, std::size_t end) { sum(begin, end, sums_[begin / grain]); });
+}
+
+/// The numbers of the boxes, in the order of cells; those of a cell in the order in which they came.
+void RowSet::place(TaskRunner* tasks) {
+    for_ranges(tasks, count_, part_length(), [&](std::size_t begin, std::size_t end) {
+        std::uint32_t* const next = table_.data() + begin / part_length() * fit_.table;
+        const float* const keys = columns_.data();
+        Proxy* const order = proxies_.data();
+        for (std::size_t i = begin; i < end; ++i)
+            order[next[std::bit_cast<std::uint32_t>(keys[i])]++] = static_cast<std::uint32_t>(i);
+    });
+}
+
+void RowSet::gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks) {
+    std::array<float*, 6> columns;
+    const std::array<std::size_t, 6> places = column_places();
+    for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
+    const std::size_t grain = tasks == nullptr ? std::max(level.count, 1u) : std::size_t{1} << 13;
+    reaches_.assign(level.count / grain + 1, {});
+    for_ranges(tasks, level.count, grain, [&](std::size_t begin, std::size_t end) {
+        reaches_[begin / grain] =
+            row_grid::gather_boxes(boxes, level.first + begin, level.first + end, columns, proxies_.data());
+    });
+    level.reach = {};
+    for (const std::array<float, 3>& reach : reaches_)
+        for (std::size_t a = 0; a < 3; ++a) level.reach[a] = std::max(level.reach[a], reach[a]);
 }
 
 /// Orders the level's boxes, of which there are only the numbers yet, by row and lower corner along it.
@@ -161,7 +230,7 @@ RowView RowSet::view() const {
     view.stride = stride_;
     view.proxies = proxies_.data();
     view.count = count_;
-    view.table = table_.data();
+    view.table = table();
     view.levels = count_ == 0 ? std::span<const RowLevel>() : std::span<const RowLevel>(fit_.levels);
     view.rows = rows_;
     view.axis = fit_.axis;
@@ -215,7 +284,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
         next += level.count;
         const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
         for (std::uint32_t cell = 0; cell < cells; ++cell) {
-            const std::uint32_t begin = table_[level.table + cell], end = table_[level.table + cell + 1];
+            const std::uint32_t begin = table()[level.table + cell], end = table()[level.table + cell + 1];
             if (begin > end || end > next) return "the cells of a level are not in order";
             for (std::uint32_t i = begin; i < end; ++i) {
                 if (proxies_[i] == killed) continue;
@@ -227,7 +296,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
                 if (std::string broken = broken_record(level, i); !broken.empty()) return broken;
             }
         }
-        if (table_[level.table + cells] != next) return "a level's cells do not hold all its boxes";
+        if (table()[level.table + cells] != next) return "a level's cells do not hold all its boxes";
         if (!level.listed) continue;
         for (std::uint32_t r = 0; r < level.row_count; ++r) {
             const ListedRow row = rows_[level.first_row + r], after = rows_[level.first_row + r + 1];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fase/broad/structure.hpp"
+#include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
@@ -122,7 +123,8 @@ inline constexpr Proxy killed = 0xffffffff;
 class RowSet {
 public:
     /// The boxes must be ordinary (see is_ordinary()). When one is not, nothing is stored and the answer is false.
-    bool build(std::span<const Move> boxes, const RowGridSettings& settings);
+    /// What is stored does not depend on `tasks`; without, one thread does all.
+    bool build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr);
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
     void kill(std::size_t record);
@@ -150,7 +152,8 @@ private:
     std::vector<float> columns_;  // as in RowView
     std::size_t stride_ = 0;
     std::vector<Proxy> proxies_;
-    std::vector<std::uint32_t> table_;
+    std::vector<std::uint32_t> table_;  // one behind the other for each part of the boxes; the last is the one to read
+    std::size_t parts_ = 1;
     std::vector<ListedRow> rows_;
     std::size_t count_ = 0, dead_ = 0;
     std::size_t fitted_count_ = 0;  // boxes when the levels were chosen
@@ -162,10 +165,18 @@ private:
         std::uint32_t x, order;
     };
     std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
+    std::vector<std::array<float, 3>> reaches_;   // scratch of gather
+    std::vector<std::uint32_t> sums_;             // scratch of sum_counts
     RowSample sample_;                            // scratch of fit
 
     void fit(std::span<const Move> boxes, const RowGridSettings& settings);
     void make_room();
+    [[nodiscard]] bool count(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks);
+    void sum_counts(TaskRunner* tasks);
+    void place(TaskRunner* tasks);
+    void gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks);
+    [[nodiscard]] std::size_t part_length() const { return (count_ + parts_ - 1) / parts_; }
+    [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;
     void sort_listed(std::span<const Move> boxes, RowLevel& level);
     [[nodiscard]] std::string broken_record(const RowLevel& level, std::size_t i) const;

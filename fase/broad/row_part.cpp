@@ -31,7 +31,7 @@ void RowPart::move(Proxy p, const Aabb& box) {
     }
 }
 
-void RowPart::commit(const RowGridSettings& settings) {
+void RowPart::commit(const RowGridSettings& settings, TaskRunner* tasks) {
     const bool changed = loose_.take_changed();
     if (blocks_.size() > 0 || blocks_.work_waits()) {
         if (loose_.size() > blocks_.size()) {
@@ -44,18 +44,18 @@ void RowPart::commit(const RowGridSettings& settings) {
         part(settings);
     }
     // What went into blocks has left the loose ones changed: that is settled here.
-    if (loose_.take_changed() || changed) sort(settings);
+    if (loose_.take_changed() || changed) sort(settings, tasks);
     next_watch_ -= next_watch_ > 0 ? 1 : 0;
     watches_ = next_watch_ == 0 && blocks_.size() == 0 && loose_.size() >= many;
     only_sorts_ = !watches_ && blocks_.size() == 0;
     changed_.clear();
 }
 
-void RowPart::sort(const RowGridSettings& settings) {
+void RowPart::sort(const RowGridSettings& settings, TaskRunner* tasks) {
     loose_.see_odd();
-    if (sorted_.build(loose_.ordinary(), settings)) return;
+    if (sorted_.build(loose_.ordinary(), settings, tasks)) return;
     loose_.see_all();
-    sorted_.build(loose_.ordinary(), settings);
+    sorted_.build(loose_.ordinary(), settings, tasks);
 }
 
 /// What has not changed since it was sorted becomes a block.

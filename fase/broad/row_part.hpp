@@ -32,7 +32,7 @@ public:
     }
     void clear();
     void reserve(std::span<const Move> boxes) { loose_.reserve(boxes); }
-    void commit(const RowGridSettings& settings);
+    void commit(const RowGridSettings& settings, TaskRunner* tasks = nullptr);
     /// commit() for boxes that are likely to stay where they are: all ordinary ones go into blocks at once.
     void settle(const RowGridSettings& settings);
     /// Boxes that are likely to stay where they are, when there is none; commits.
@@ -80,7 +80,7 @@ private:
     std::vector<Move> settling_;    // scratch
 
     void note(Proxy p);
-    void sort(const RowGridSettings& settings);
+    void sort(const RowGridSettings& settings, TaskRunner* tasks);
     void part(const RowGridSettings& settings);
     void join();
     void look_for_calm();

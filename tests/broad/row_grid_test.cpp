@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fase/broad/brute_force.hpp"
@@ -100,6 +101,51 @@ TEST(RowGrid, FindsTheSamePairsInTheSameOrderWithAnyNumberOfThreads) {
         pairs.erase(pairs.begin());
         EXPECT_TRUE(pairs == serial) << threads;
     }
+}
+
+TEST(RowGrid, StoresTheSameWithAnyNumberOfThreads) {
+    std::vector<Move> boxes = gas(70000, 12);
+    for (Proxy p = 0; p < 70000; p += 100) boxes[p].box.hi += Vec3{4, 2, 6};  // some on upper levels
+    boxes[7].box = Aabb::everything();
+    for (const Rows rows : {Rows::Table, Rows::List}) {
+        std::vector<Pair> serial;
+        for (const int threads : {1, 2, 3, 8}) {
+            const auto tasks = make_thread_runner(threads);
+            RowGrid grid({.rows = rows});
+            for (const Move& m : boxes) grid.insert(m.proxy, m.box);
+            grid.commit(*tasks);
+            for (Proxy p = 0; p < 70000; ++p) grid.move(p, boxes[69999 - p].box);
+            grid.commit(*tasks);
+            ASSERT_EQ(grid.broken_invariant(), "");
+            if (threads == 1) serial = found(grid);
+            EXPECT_TRUE(found(grid) == serial) << threads;
+        }
+    }
+}
+
+TEST(RowGrid, SeesAtCommitWhichBoxesHaveBecomeOddOrOrdinary) {
+    const float nan = std::nanf("");
+    const std::array<Aabb, 4> odd{Aabb::everything(), Aabb{{1, 1, 1}, {0, 0, 0}}, Aabb{{nan, 0, 0}, {1, 1, 1}},
+                                  Aabb{{0, 0, -1e18f}, {1, 1, 1}}};
+    for_each_target([&](const char* name) {
+        SCOPED_TRACE(name);
+        std::vector<Move> boxes = gas(2000, 13);
+        const std::vector<Move> usual = boxes;
+        RowGrid grid = grid_of(boxes);
+        for (int step = 0; step < 6; ++step) {
+            for (Proxy p = 0; p < 2000; ++p) {
+                boxes[p].box = (p + static_cast<Proxy>(step)) % 300 == 0 ? odd[p / 300 % 4] : usual[p].box;
+                grid.move(p, boxes[p].box);
+            }
+            if (step == 4) {  // all at once
+                for (Move& m : boxes) m.box = odd[m.proxy % 4];
+                for (const Move& m : boxes) grid.move(m.proxy, m.box);
+            }
+            grid.commit();
+            ASSERT_EQ(grid.broken_invariant(), "");
+            ASSERT_EQ(sorted_pairs(grid), judged(boxes));
+        }
+    });
 }
 
 TEST(RowGrid, FindsEveryPairOfALatticeOfTouchingBoxes) {
