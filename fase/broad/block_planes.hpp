@@ -16,6 +16,8 @@ public:
     static constexpr std::uint32_t none = 0xffffffff;
 
     [[nodiscard]] bool empty() const { return root_ == none; }
+    /// Are there several cells?
+    [[nodiscard]] bool is_cut() const { return root_ != none && (root_ & leaf) == 0; }
     /// All of space becomes one cell.
     void begin(std::uint32_t cell);
     /// What lies at or beyond the plane becomes another cell. `at` is twice the coordinate, as middle() is.

@@ -226,13 +226,14 @@ Aabb bounds_of_wide(const ColumnsView& boxes) {
         auto lo = hn::Set(d, around.lo[axis]), hi = hn::Set(d, around.hi[axis]);
         std::size_t k = 0;
         for (; k + lanes <= boxes.count; k += lanes) {
-            lo = hn::Min(lo, hn::LoadU(d, boxes.lo[a] + k));
-            hi = hn::Max(hi, hn::LoadU(d, boxes.hi[a] + k));
+            const auto from = hn::LoadU(d, boxes.lo[a] + k), to = hn::LoadU(d, boxes.hi[a] + k);
+            lo = hn::IfThenElse(hn::Lt(from, lo), from, lo);  // Min would take a NaN
+            hi = hn::IfThenElse(hn::Gt(to, hi), to, hi);
         }
         float least = hn::GetLane(hn::MinOfLanes(d, lo)), most = hn::GetLane(hn::MaxOfLanes(d, hi));
         for (; k < boxes.count; ++k) {
-            least = std::min(least, boxes.lo[a][k]);
-            most = std::max(most, boxes.hi[a][k]);
+            least = boxes.lo[a][k] < least ? boxes.lo[a][k] : least;
+            most = boxes.hi[a][k] > most ? boxes.hi[a][k] : most;
         }
         around.lo[axis] = least;
         around.hi[axis] = most;

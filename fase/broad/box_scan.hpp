@@ -36,7 +36,7 @@ void scan_ranges(const ColumnsView& boxes, const std::uint32_t* marks, std::span
 std::size_t scan_touching(const ColumnsView& boxes, std::size_t begin, std::size_t end, const Aabb& box,
                           std::uint32_t* hits);
 
-/// The least box around all of them, of which no bound is NaN; empty for none.
+/// The least box around all of them; bounds that are NaN do not count.
 [[nodiscard]] Aabb bounds_of(const ColumnsView& boxes);
 
 }  // namespace fase::broad

@@ -61,7 +61,7 @@ void RowBlocks::empty_records() {
 
 void RowBlocks::commit(std::span<const Move> born, const RowGridSettings& settings) {
     if (born.empty() && !work_waits()) return;
-    std::size_t paid = std::max(block_most, 8 * (born.size() + gone_.size()));
+    std::size_t paid = block_most + 2 * (born.size() + gone_.size());
     if (!gone_.empty()) empty_records();
     if (!born.empty()) {
         Proxy largest = 0;
@@ -173,32 +173,51 @@ void RowBlocks::take_in(std::span<const Move> boxes, const RowGridSettings& sett
     }
 }
 
-/// Many boxes pay for sorting the block anew; few go beside it.
+/// Many boxes pay for sorting the block anew. Few go where others have left, or beside it where there is no room.
 void RowBlocks::add(std::uint32_t b, std::span<const Move> boxes, const RowGridSettings& settings) {
     Block& block = blocks_[b];
     if (4 * boxes.size() >= block.live()) return remake(b, boxes, settings);
     gathered_.clear();
-    append(block.late, gathered_);
-    gathered_.insert(gathered_.end(), boxes.begin(), boxes.end());
-    block.late.build(gathered_, with_sample(settings, 64));
-    block.late_work += gathered_.size();
-    settle(2 * b + 1);
+    for (const Move& m : boxes)
+        if (!put(2 * b, m) && !put(2 * b + 1, m)) gathered_.push_back(m);
+    if (!gathered_.empty()) {
+        append(block.late, gathered_);
+        block.late.build(gathered_, with_sample(settings, 64));
+        block.late_work += gathered_.size();
+        settle(2 * b + 1);
+    }
     look_at(b);
 }
 
-/// Sorts a block anew, with more boxes.
+bool RowBlocks::put(std::uint32_t k, const Move& m) {
+    const std::optional<RecordSpan> moved = set_at(k).put(m);
+    if (!moved) return false;
+    const Proxy* const proxies = set(k).view().proxies;
+    for (std::uint32_t i = moved->begin; i < moved->end; ++i)
+        if (proxies[i] != killed) spots_[proxies[i]] = {k, i};
+    bounds_.put(k, k, merge(bounds_.box(k), m.box));
+    return true;
+}
+
+/// Sorts a block anew, with more boxes. One that has lived already gets room for others.
 void RowBlocks::remake(std::uint32_t b, std::span<const Move> more, const RowGridSettings& settings) {
     Block& block = blocks_[b];
+    gathered_.clear();
+    append_boxes(b, gathered_);
+    const bool has_lived = !gathered_.empty() || planes_[block.planes].is_cut();
     std::span<const Move> boxes = more;
-    if (block.live() > 0) {
-        gathered_.clear();
-        append_boxes(b, gathered_);
+    if (has_lived) {
         gathered_.insert(gathered_.end(), more.begin(), more.end());
+        const std::size_t count = gathered_.size();
+        if (count <= block_most)
+            for (std::size_t i = 0; i < count; i += 16) gathered_.push_back({killed, gathered_[i].box});
         boxes = gathered_;
     }
     block.main.build(boxes, boxes.size() > block_most ? settings : with_sample(settings, 256));
+    if (has_lived) block.main.make_holes();
     if (block.late.size() > 0) block.late.build({}, settings);
     block.late_work = 0;
+    block.holes = static_cast<std::uint32_t>(block.main.dead());
     block.waits = false;
     settle(2 * b);
     settle(2 * b + 1);
@@ -208,7 +227,8 @@ void RowBlocks::remake(std::uint32_t b, std::span<const Move> more, const RowGri
 /// Notes where the boxes of a set that was made anew stand, and their bounds.
 void RowBlocks::settle(std::uint32_t k) {
     const RowView view = set(k).view();
-    for (std::uint32_t i = 0; i < view.count; ++i) spots_[view.proxies[i]] = {k, i};
+    for (std::uint32_t i = 0; i < view.count; ++i)
+        if (view.proxies[i] != killed) spots_[view.proxies[i]] = {k, i};
     bounds_.put(k, k, view.count == 0 ? nothing : bounds_of({view.lo, view.hi, view.proxies, view.count}));
 }
 

@@ -72,6 +72,7 @@ private:
         std::size_t late_work = 0;  // boxes that were sorted into `late` since `main` was made
         std::uint32_t coming = 0;   // of a commit under way: how many boxes, then where the next one goes
         std::uint32_t going = 0;    // of a commit under way: how many records are to be emptied
+        std::uint32_t holes = 0;    // empty records that `main` was made with
         std::uint8_t planes = 0;    // which of planes_ tell its boxes from others; or it dissolves
         bool used = false, waits = false, is_heir = false;
 
@@ -79,7 +80,8 @@ private:
         [[nodiscard]] std::size_t live() const { return main.size() + late.size() - dead(); }
         /// Sorting it anew costs no more than what has been and will be lost by not doing so.
         [[nodiscard]] bool worn() const {
-            return late_work + 4 * late.size() + 8 * dead() >= live() + 256 || (live() == 0 && !is_heir);
+            const std::size_t empty = dead() - std::min<std::size_t>(dead(), holes);
+            return late_work + 4 * late.size() + 8 * empty >= live() + 256 || (live() == 0 && !is_heir);
         }
     };
     struct Spot {
@@ -120,6 +122,7 @@ private:
     std::span<const Move> group(std::span<const Move> boxes);
     void take_in(std::span<const Move> boxes, const RowGridSettings& settings);
     void add(std::uint32_t b, std::span<const Move> boxes, const RowGridSettings& settings);
+    bool put(std::uint32_t k, const Move& m);
     void remake(std::uint32_t b, std::span<const Move> more, const RowGridSettings& settings);
     void build(std::uint32_t b, std::span<const Move> boxes, const RowGridSettings& settings);
     void settle(std::uint32_t k);

@@ -2,6 +2,7 @@
 /// Boxes sorted into the rows of a grid of several levels, made anew from a list of boxes: what a row grid searches.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -119,6 +120,11 @@ inline constexpr std::size_t row_slack = 32;
 /// The proxy of a record that RowSet::kill() has emptied.
 inline constexpr Proxy killed = 0xffffffff;
 
+/// Places of records one after the other.
+struct RecordSpan {
+    std::uint32_t begin = 0, end = 0;
+};
+
 /// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
 class RowSet {
 public:
@@ -128,6 +134,12 @@ public:
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
     void kill(std::size_t record);
+    /// Takes in an ordinary box where a record in its row has been killed; others of the row may move by a place.
+    /// Returns which places hold other records than before, the new one among them; nothing, and all is as before, when
+    /// there is no such record. O(records in the row).
+    std::optional<RecordSpan> put(const Move& m);
+    /// Kills the records of all boxes that were handed to build() with the proxy `killed`: room for put().
+    void make_holes();
 
     [[nodiscard]] RowView view() const;
     /// Of a record that is not killed.
@@ -177,6 +189,7 @@ private:
     void gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks);
     [[nodiscard]] std::size_t part_length() const { return (count_ + parts_ - 1) / parts_; }
     [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
+    RecordSpan shift(std::uint32_t hole, std::uint32_t place);
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;
     void sort_listed(std::span<const Move> boxes, RowLevel& level);
     [[nodiscard]] std::string broken_record(const RowLevel& level, std::size_t i) const;

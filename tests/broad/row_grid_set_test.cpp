@@ -78,5 +78,63 @@ RC_GTEST_PROP(RowSetProperty, ShowsNoSearchARecordThatIsKilled, ()) {
     RC_ASSERT(visited == all);
 }
 
+RC_GTEST_PROP(RowSetProperty, TakesBoxesInWhereOthersWereKilled, ()) {
+    Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
+    const float world = *rc::gen::element(0.0f, 5.0f, 20.0f, 1e6f);
+    const auto count = *rc::gen::inRange<Proxy>(1, 400);
+    const auto draw = [&] {
+        const Vec3 lo = place(random, -world / 4, world), sides = place(random, 0, random.below(8) == 0 ? 20.0f : 1.5f);
+        return Aabb{lo, lo + sides};
+    };
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < count; ++p) boxes.push_back({p, draw()});
+    std::vector<Move> with_holes = boxes;
+    for (Proxy p = 0; p < count; p += 5) with_holes.push_back({killed, boxes[p].box});
+    RowSet set;
+    set.build(with_holes, {.rows = *rc::gen::element(Rows::Table, Rows::List)});
+    set.make_holes();
+    RC_ASSERT(set.broken_invariant(boxes) == "");
+    Proxy next = count;
+    std::size_t taken = 0;
+    const auto record_of = [&](Proxy p) {
+        const RowView view = set.view();
+        return static_cast<std::uint32_t>(std::find(view.proxies, view.proxies + view.count, p) - view.proxies);
+    };
+    for (int step = 0; step < 60; ++step) {
+        if (random.below(3) == 0 && !boxes.empty()) {
+            const std::size_t at = random.below(boxes.size());
+            set.kill(record_of(boxes[at].proxy));
+            boxes[at] = boxes.back();
+            boxes.pop_back();
+            continue;
+        }
+        Move m{next++, draw()};
+        if (random.below(2) == 0 && !boxes.empty()) m.box = boxes[random.below(boxes.size())].box;
+        std::vector<std::uint32_t> before;
+        for (const Move& other : boxes) before.push_back(record_of(other.proxy));
+        const auto moved = set.put(m);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const std::uint32_t now = record_of(boxes[i].proxy);
+            RC_ASSERT(now == before[i] || (moved && now >= moved->begin && now < moved->end));
+        }
+        if (!moved) continue;
+        ++taken;
+        const std::uint32_t mine = record_of(m.proxy);
+        RC_ASSERT(mine >= moved->begin && mine < moved->end);
+        boxes.push_back(m);
+        RC_ASSERT(set.broken_invariant(boxes) == "");
+    }
+    RC_CLASSIFY(taken > 10);
+    std::vector<Pair> expected, found;
+    BruteForce judge;
+    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
+    find_pairs(judge, expected);
+    {
+        row_grid::PairBlock block(found);
+        row_grid::find_own_pairs(set.view(), 0, set.size(), block);
+    }
+    RC_ASSERT(sorted(found) == sorted(expected));
+}
+
 }  // namespace
 }  // namespace fase::broad
