@@ -21,7 +21,7 @@ struct CompileOptions {
     /// So many different lines are weighed at a node, at least 1, spread over all when there are more.
     std::size_t candidates = 512;
     /// Capacity error when more pieces come to be; lines that cross each other everywhere have n^2.
-    std::size_t most_pieces = std::size_t{1} << 22;
+    std::size_t most_pieces = std::size_t{1} << 21;
 };
 
 /// Cuts the map until each piece is convex and of one sector. All sides are decided in whole numbers (a cut point is
