@@ -13,7 +13,7 @@ public:
         : name_(name), finder_(*broad::AnyStructure::named(name)) {
         finder_.build(*tasks_, scene.boxes, scene.populations);
     }
-    void update(std::span<const Aabb> boxes) override { finder_.update(boxes); }
+    void update(std::span<const Aabb> boxes) override { finder_.update(*tasks_, boxes); }
     void find_pairs(std::vector<Pair>& out) override { finder_.find_pairs(*tasks_, out); }
     [[nodiscard]] std::string settings() const override { return "Fase, " + name_; }
     [[nodiscard]] std::size_t bytes() const override { return finder_.stats().bytes; }

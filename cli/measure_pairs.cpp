@@ -100,7 +100,7 @@ public:
         if (changes_) {
             told_ = tracker_.update(tasks_, boxes);
         } else {
-            finder_.update(boxes);
+            finder_.update(tasks_, boxes);
         }
     }
     void find() {

@@ -2,6 +2,7 @@
 #include "fase/broad/pair_finder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "fase/core/check.hpp"
@@ -13,28 +14,44 @@ bool is_absent(const Aabb& box) { return box == Aabb{}; }
 
 /// Appends the places at which the boxes are others than before, bit by bit (a NaN that stays is no change), in order;
 /// `before` is as they are then.
-void take_changed(std::span<const Aabb> boxes, std::span<Aabb> before, std::vector<Proxy>& changed) {
+void take_changed(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<Aabb> before, std::vector<Proxy>& changed) {
     static_assert(sizeof(Aabb) == 24);
     const auto word = [](const Aabb& box, int k) {
         std::uint64_t bits;
         std::memcpy(&bits, reinterpret_cast<const char*>(&box) + 8 * k, 8);
         return bits;
     };
+    constexpr std::size_t most_parts = 64;
+    const std::size_t grain = std::max<std::size_t>(16384, boxes.size() / most_parts + 1);
+    const std::size_t parts = (boxes.size() + grain - 1) / grain;
     changed.resize(boxes.size());
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const Aabb &old = before[i], &now = boxes[i];
-        const std::uint64_t differing =
-            (word(old, 0) ^ word(now, 0)) | (word(old, 1) ^ word(now, 1)) | (word(old, 2) ^ word(now, 2));
-        changed[count] = static_cast<Proxy>(i);
-        count += differing != 0 ? 1 : 0;
+    std::array<std::size_t, most_parts> counts{};
+    parallel_ranges(tasks, parts, 1, [&](std::size_t part, std::size_t) {
+        const std::size_t begin = part * grain, end = std::min(boxes.size(), begin + grain);
+        Proxy* const out = changed.data() + begin;
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Aabb &old = before[i], &now = boxes[i];
+            const std::uint64_t differing =
+                (word(old, 0) ^ word(now, 0)) | (word(old, 1) ^ word(now, 1)) | (word(old, 2) ^ word(now, 2));
+            out[count] = static_cast<Proxy>(i);
+            count += differing != 0 ? 1 : 0;
+        }
+        if (2 * count > end - begin) {
+            std::memcpy(before.data() + begin, boxes.data() + begin, (end - begin) * sizeof(Aabb));
+        } else {
+            for (const Proxy p : std::span(out, count)) before[p] = boxes[p];
+        }
+        counts[part] = count;
+    });
+    std::size_t all = 0;
+    for (std::size_t part = 0; part < parts; ++part) {
+        if (all != part * grain)
+            std::copy_n(changed.begin() + static_cast<std::ptrdiff_t>(part * grain), counts[part],
+                        changed.begin() + static_cast<std::ptrdiff_t>(all));
+        all += counts[part];
     }
-    changed.resize(count);
-    if (2 * count > boxes.size()) {
-        std::copy(boxes.begin(), boxes.end(), before.begin());
-    } else {
-        for (const Proxy p : changed) before[p] = boxes[p];
-    }
+    changed.resize(all);
 }
 
 }  // namespace
@@ -75,13 +92,13 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     resting_.add(found);
 }
 
-void PairFinder::update(std::span<const Aabb> boxes) {
+void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     FASE_ASSERT(boxes.size() >= populations_.size());
     absent_count_ += boxes.size() - populations_.size();
     boxes_.resize(boxes.size());
     populations_.resize(boxes.size(), Population::Absent);
     known_static_.resize(boxes.size(), 0);
-    take_changed(boxes, boxes_, changed_);
+    take_changed(tasks, boxes, boxes_, changed_);
     if (awake_.size() == boxes.size() &&
         std::none_of(changed_.begin(), changed_.end(), [&](Proxy p) { return is_absent(boxes[p]); })) {
         awake_.move(changed_, boxes_);
@@ -90,7 +107,7 @@ void PairFinder::update(std::span<const Aabb> boxes) {
     }
     constexpr std::uint32_t looks_again = 32;
     if (automatic_) suit_all(++updates_ % looks_again == 0);
-    for (AnyStructure* structure : {&awake_, &asleep_, &static_}) structure->commit();
+    for (AnyStructure* structure : {&awake_, &asleep_, &static_}) structure->commit(tasks);
     keep_static_pairs();
 }
 

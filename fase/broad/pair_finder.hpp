@@ -37,7 +37,7 @@ public:
     void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
     /// Takes the boxes of the next frame: as many as there were, or more, which come then. Only those that changed,
     /// come or go cost more than a comparison.
-    void update(std::span<const Aabb> boxes);
+    void update(TaskRunner& tasks, std::span<const Aabb> boxes);
     /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
     /// The same without those of two that rest.

@@ -47,7 +47,7 @@ bool PairTracker::advance(TaskRunner& tasks, std::span<const Aabb> boxes) {
 PairChanges PairTracker::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     FASE_ASSERT(boxes.size() == places_.size());
     const bool disturbed = advance(tasks, boxes);
-    finder_.update(spans_);
+    finder_.update(tasks, spans_);
     found_.clear();
     if (disturbed || rest_disturbed_) {
         finder_.find_pairs(tasks, found_);

@@ -205,7 +205,7 @@ void track_pairs(WorldState& state) {
         constexpr std::uint64_t looks_again = 32;  // steps
         for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) {
             if (state.suits_structures) broad::suit(*boxes, state.steps % looks_again == 0);
-            boxes->commit();
+            boxes->commit(*state.tasks);
         }
     };
     state.askers.clear();

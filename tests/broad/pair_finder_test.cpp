@@ -68,7 +68,7 @@ TEST_P(EveryStructure, FindsWhatTryingAllFindsInEachFrameOfEachScene) {
                                                                       : frame % 5 == 0 && random.below(9) == 0;
                 if (moves) boxes[p] = scene.draw(random);
             }
-            finder.update(boxes);
+            finder.update(*one, boxes);
         }
     }
 }
@@ -94,21 +94,21 @@ TEST_P(EveryStructure, WakesASleeperWhoseBoxChanges) {
     finder.build(*one, boxes, populations);
     EXPECT_EQ(finder.awake(), 1u);
     EXPECT_EQ(finder.resting_pairs().size(), 3u);
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.awake(), 1u) << "nothing has moved";
     boxes[2] = cube(1.5f);
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.awake(), 2u);
     EXPECT_EQ(finder.population(2), Population::Awake);
     EXPECT_EQ(finder.resting_pairs().size(), 1u);
     EXPECT_EQ(pairs_of(finder, *one), (std::vector<Pair>{{0, 1}, {1, 2}}));
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.population(2), Population::Awake) << "it has not come to rest";
 }
 
 TEST_P(EveryStructure, IsBuiltAnewAndMayBeEmpty) {
     finder.build(*one, {}, {});
-    finder.update({});
+    finder.update(*one, {});
     EXPECT_TRUE(pairs_of(finder, *four).empty());
     const std::vector<Aabb> two(2, Aabb{{0, 0, 0}, {1, 1, 1}});
     finder.build(*one, two, std::vector<Population>(2, Population::Asleep));
@@ -144,7 +144,7 @@ TEST_P(EveryStructure, KnowsAnEmptyBoxForOneThatIsNotThere) {
         }
         boxes.push_back(draw());
         populations.push_back(Population::Awake);
-        finder.update(boxes);
+        finder.update(*one, boxes);
     }
 }
 
@@ -155,15 +155,15 @@ TEST_P(EveryStructure, KeepsTheRestingPairsOfWhatIsNotTouched) {
     finder.build(*one, boxes, std::vector<Population>(100, Population::Asleep));
     EXPECT_EQ(finder.resting_pairs().size(), 99u);
     boxes[50].hi.y = 2;
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.resting_pairs().size(), 97u);
     boxes[10] = {};
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.resting_pairs().size(), 95u);
     EXPECT_EQ(pairs_of(finder, *one).size(), 97u);
     for (Aabb& box : boxes) box = {box.lo + Vec3{0, 1, 0}, box.hi + Vec3{0, 1, 0}};
     boxes[10] = cube(7.5f);
-    finder.update(boxes);
+    finder.update(*one, boxes);
     EXPECT_EQ(finder.resting_pairs().size(), 0u);
     EXPECT_EQ(finder.awake(), 100u);
 }

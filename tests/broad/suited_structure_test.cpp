@@ -107,7 +107,7 @@ TEST(SuitedStructure, AnExplosionOfFewMakesManyAtOnce) {
     EXPECT_EQ(finder.chosen(Population::Asleep).structure, "row_grid");
     EXPECT_FALSE(finder.chosen(Population::Awake).reason.empty());
     for (Aabb& box : boxes) box.hi.y += 1;
-    finder.update(boxes);
+    finder.update(*tasks, boxes);
     EXPECT_EQ(finder.awake(), boxes.size());
     EXPECT_EQ(finder.chosen(Population::Awake).structure, "row_grid");
     EXPECT_EQ(finder.chosen(Population::Asleep).structure, "brute_force");
