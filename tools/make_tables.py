@@ -204,7 +204,8 @@ STRUCTURE_HEAD = """
 Made from `{figures}`. To renew it: `tools/measure_structures.py && tools/make_tables.py`.
 
 Traces of `fase generate`, played by `fase pairs`; one thread. A frame's time is that of taking its boxes and finding all its pairs, which
-were those of the judge in every frame. In a cell: median ms (worst), bytes a box, depth, boxes in a leaf.
+were those of the judge in every frame. In a cell: median ms (worst), bytes a box, depth, boxes in a leaf. `auto` chooses for itself; the
+last line is its median over that of the quickest other one.
 """
 
 
@@ -213,17 +214,26 @@ def structure_page_of(path):
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     parts = [STRUCTURE_HEAD.format(figures=STRUCTURE_FIGURES)]
-    for machine in dict.fromkeys(row["machine"] for row in rows):
-        mine = [row for row in rows if row["machine"] == machine]
+    for machine, count in dict.fromkeys((row["machine"], row["boxes"]) for row in rows):
+        mine = [row for row in rows if (row["machine"], row["boxes"]) == (machine, count)]
         traces = list(dict.fromkeys(row["trace"] for row in mine))
-        cells = {(row["structure"], row["trace"]): f"{float(row['median_ms']):.2f} ({float(row['worst_ms']):.1f}), "
+        digits = 2 if int(count) >= 10000 else 4
+        cells = {(row["structure"], row["trace"]): f"{float(row['median_ms']):.{digits}f} ({float(row['worst_ms']):.{digits - 1}f}), "
                  f"{row['bytes_a_box']}, {row['depth']}, {float(row['boxes_a_leaf']):.1f}" for row in mine}
-        lines = [f"## {mine[0]['boxes']} boxes, {machine}, {mine[0]['commit']}, {mine[0]['date']}", "",
+        lines = [f"## {count} boxes, {machine}, {mine[0]['commit']}, {mine[0]['date']}", "",
                  line_of(["structure", *traces]), line_of(["---"] * (len(traces) + 1))]
         for structure in dict.fromkeys(row["structure"] for row in mine):
             lines.append(line_of([structure, *(cells.get((structure, trace), "") for trace in traces)]))
+        lines.append(line_of(["auto / best", *(ratio_of_auto([row for row in mine if row["trace"] == trace]) for trace in traces)]))
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
+
+
+def ratio_of_auto(rows):
+    """What the automatic choice takes, to what the quickest structure does; "" where it was not measured."""
+    auto = [float(row["median_ms"]) for row in rows if row["structure"] == "auto"]
+    others = [float(row["median_ms"]) for row in rows if row["structure"] != "auto"]
+    return f"{auto[0] / min(others):.2f}" if auto and others else ""
 
 
 LEVEL_FIGURES = "bench/results/level.csv"

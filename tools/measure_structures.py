@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times every structure on traces made by rule and writes bench/results/structures.csv.
 
-Usage: measure_structures.py [--program build/release/fase] [--count 10000] [--frames 40] [REPOSITORY]. Each trace is made by
+Usage: measure_structures.py [--program build/release/fase] [--counts 100 1000 10000] [--frames 40] [REPOSITORY]. Each trace is made by
 `fase generate`, and its pairs are held against the judge before its row is written. Then tools/make_tables.py.
 """
 import argparse
@@ -32,9 +32,12 @@ def rows_of(program, kind, count, frames, folder):
     trace = Path(folder) / f"{kind}.aabt"
     subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
                    stdout=subprocess.DEVNULL)
-    told = subprocess.run([program, "pairs", trace, "--structure", "all", "--check", "--json"], check=True,
-                          stdout=subprocess.PIPE, text=True).stdout
-    for row in json.loads(told):
+    told = []
+    for structure in ("auto", "all"):
+        out = subprocess.run([program, "pairs", trace, "--structure", structure, "--check", "--json"], check=True,
+                             stdout=subprocess.PIPE, text=True).stdout
+        told += json.loads(out)
+    for row in told:
         if row["skipped"] is None:
             yield {"trace": kind, "boxes": count, "frames": row["frames"], "structure": row["structure"],
                    "build_ms": row["build_ms"], "mean_ms": row["ms"]["mean"], "median_ms": row["ms"]["median"],
@@ -45,7 +48,7 @@ def rows_of(program, kind, count, frames, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default="build/release/fase")
-    parser.add_argument("--count", type=int, default=10000)
+    parser.add_argument("--counts", type=int, nargs="+", default=[100, 1000, 10000])
     parser.add_argument("--frames", type=int, default=40)
     parser.add_argument("repository", nargs="?", default=Path(__file__).parent.parent, type=Path)
     options = parser.parse_args()
@@ -53,8 +56,8 @@ def main():
                             stdout=subprocess.PIPE, text=True).stdout.strip()
     about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
     with tempfile.TemporaryDirectory() as folder:
-        rows = [about | row for kind in KINDS
-                for row in rows_of(str(options.program), kind, options.count, options.frames, folder)]
+        rows = [about | row for count in options.counts for kind in KINDS
+                for row in rows_of(str(options.program), kind, count, options.frames, folder)]
     with (options.repository / "bench/results/structures.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
         writer.writeheader()
