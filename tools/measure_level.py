@@ -2,7 +2,7 @@
 """Compiles all maps of WAD files with `fase level`, zdbsp and glbsp in turns and writes bench/results/level.csv.
 
 Usage: measure_level.py [--program build/release/fase] [--rounds 5] [--repository .] [WAD …]. Without WADs those of Debian's
-package freedoom. Peers are those found on PATH (Debian: zdbsp, glbsp). Whatever compiled a map, its figures are read from the
+package freedoom. Peers are those found on PATH (tools/install_peers installs zdbsp, glbsp and freedoom). Whatever compiled a map, its figures are read from the
 lumps that it wrote, by `fase level --lumps nodes --check`. The time of a single map is less that of starting the program.
 Then tools/make_tables.py.
 """

@@ -7,7 +7,7 @@ stop() { printf '%s: error: %s\n' "${0##*/}" "$*" >&2; exit 1; }
 # is_at_least HAVE NEED: compares dotted versions.
 is_at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
 
-# is_there KIND NAME [LEAST]: is a command (of at least that version) or a header on this system?
+# is_there KIND NAME [LEAST]: is a command (of at least that version), a header or a file on this system?
 is_there() {
     case $1 in
         cmd)
@@ -19,7 +19,8 @@ is_there() {
                 [ ! -e "$folder/$2" ] || return 0
             done
             return 1 ;;
-        *) stop "packages.txt: found '$1', need cmd or header" ;;
+        file) [ -e "$2" ] ;;
+        *) stop "packages.txt: found '$1', need cmd, header or file" ;;
     esac
 }
 
