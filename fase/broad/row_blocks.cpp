@@ -27,6 +27,8 @@ template <class T> void keep_small(std::vector<T>& scratch) {
     if (scratch.capacity() > 2 * RowBlocks::block_most) scratch = {};
 }
 
+constexpr std::size_t a_hole_in = 8;  // boxes of a block that has lived
+
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr Aabb nothing{{nan, nan, nan}, {nan, nan, nan}};
 
@@ -210,7 +212,7 @@ void RowBlocks::remake(std::uint32_t b, std::span<const Move> more, const RowGri
         gathered_.insert(gathered_.end(), more.begin(), more.end());
         const std::size_t count = gathered_.size();
         if (count <= block_most)
-            for (std::size_t i = 0; i < count; i += 16) gathered_.push_back({killed, gathered_[i].box});
+            for (std::size_t i = 0; i < count; i += a_hole_in) gathered_.push_back({killed, gathered_[i].box});
         boxes = gathered_;
     }
     block.main.build(boxes, boxes.size() > block_most ? settings : with_sample(settings, 256));

@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::size_t many = RowBlocks::block_most;  // fewer are sorted faster than looked after
 constexpr std::size_t few_share = 16;                // one in so many is few
-constexpr std::size_t most_settle = 4096;            // in one commit
+constexpr std::size_t least_settle = 1024;           // in one commit, or a quarter of all that are calm
 
 }  // namespace
 
@@ -94,7 +94,8 @@ void RowPart::look_for_calm() {
 
 void RowPart::settle_calm(const RowGridSettings& settings) {
     settling_.clear();
-    while (!calm_.empty() && settling_.size() < most_settle) {
+    const std::size_t count = std::max(least_settle, calm_.size() / 4);
+    while (!calm_.empty() && settling_.size() < count) {
         const Proxy p = calm_.back();
         calm_.pop_back();
         if (!loose_.holds(p) || loose_.is_awake(p) || loose_.is_odd(p)) continue;  // it has changed since then

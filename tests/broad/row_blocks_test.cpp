@@ -129,7 +129,7 @@ TEST(RowBlocks, DissolveALargeBlockThatIsWornAFewBoxesACommit) {
     EXPECT_GE(dissolving, 3u);
     EXPECT_GE(held.sets_in_use(), 5u);
     for (std::size_t k = 0; k < held.blocks.sets(); ++k)
-        EXPECT_LE(held.blocks.set(k).size(), RowBlocks::block_most * 17 / 16);
+        EXPECT_LE(held.blocks.set(k).size(), RowBlocks::block_most * 9 / 8 + 1);
 }
 
 TEST(RowBlocks, KeepsWhatHasOneMiddleInOneBlock) {
