@@ -249,6 +249,67 @@ TEST(SeenFrom, MeasuresTheSurfaceThatRaysSweep) {
     EXPECT_NEAR(all->area, 192.0 * 192.0 * seen / asked, 192 * 192 * 0.02);
 }
 
+/// Lines anywhere over each other, sectors that are not closed.
+Map scribble(std::uint64_t seed) {
+    Random random(seed);
+    Map map;
+    map.name = "MAP01";
+    for (int i = 0; i < 3; ++i) {
+        Sector sector;
+        sector.floor = static_cast<std::int16_t>(random.below(100));
+        sector.ceiling = static_cast<std::int16_t>(50 + random.below(100));
+        map.sectors.push_back(sector);
+    }
+    const auto place = [&] { return static_cast<std::int16_t>(8 * random.below(20)); };
+    for (int i = 0; i < 24; ++i) map.vertices.push_back({place(), place()});
+    for (int i = 0; i < 30; ++i) {
+        Line line;
+        line.from = static_cast<std::uint16_t>(random.below(24));
+        line.to = static_cast<std::uint16_t>(random.below(24));
+        for (std::uint16_t* side : {&line.right, &line.left}) {
+            if (side == &line.left && random.below(2) == 0) continue;
+            *side = static_cast<std::uint16_t>(map.sides.size());
+            Side one;
+            one.sector = static_cast<std::uint16_t>(random.below(3));
+            map.sides.push_back(one);
+        }
+        map.lines.push_back(line);
+    }
+    return map;
+}
+
+TEST(FindVisible, AnswersForMapsThatAreNoPlans) {
+    int compiled = 0;
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+        Level level{"scribble", scribble(seed), {}};
+        auto bsp = compile(level.map);
+        if (!bsp) continue;
+        ++compiled;
+        level.bsp = *std::move(bsp);
+        const PlanBox box = box_of(level.bsp);
+        Random random(seed);
+        for (const Heights heights : {Heights::Ignored, Heights::Counted}) {
+            const auto found = find_visible(level.bsp, level.map, {.heights = heights});
+            ASSERT_TRUE(found);
+            std::vector<Passage> way;
+            for (int i = 0; i < 300; ++i) {
+                const Point from = place_in(box, random);
+                const auto cell = sub_sector_at(level.bsp, from);
+                const LevelRay ray{from, 60, {double(random.between(-1, 1)), double(random.between(-1, 1))}, 0};
+                EXPECT_EQ(cast_ray(level.bsp, level.map, ray, heights).has_value(),
+                          cast_ray_at_all(level.bsp, level.map, ray, heights).has_value());
+                EXPECT_EQ(seen_from(level.bsp, level.map, {from, 60}, heights).has_value(), cell.has_value());
+                if (!cell || heights == Heights::Counted) continue;
+                way.clear();
+                passages(level.bsp, level.map, ray, heights, way);
+                for (const Passage& passage : way)
+                    EXPECT_TRUE(found->sets.sees(*cell, passage.sub_sector)) << "seed " << seed;
+            }
+        }
+    }
+    EXPECT_GT(compiled, 20);
+}
+
 TEST(SeenFrom, KnowsNothingOutside) {
     const Level level = grid({"aaa"});
     EXPECT_FALSE(seen_from(level.bsp, level.map, {{-50, 0}, 0}));

@@ -194,6 +194,24 @@ TEST(LevelRoom, TellsHowHighACylinderMayStand) {
     EXPECT_EQ(room(288, 96, 20)->ceiling, 72);
 }
 
+TEST(LevelSolids, AreMadeOfMapsThatAreNotClosed) {
+    auto levels = freedoom_levels({"e1m1.wad"});
+    levels.push_back(ring());
+    for (Level& level : levels) {
+        for (std::size_t drop = 0; drop < 6; ++drop) {
+            Level open{level.name, level.map, {}};
+            open.map.lines.erase(open.map.lines.begin() +
+                                 static_cast<std::ptrdiff_t>(drop * open.map.lines.size() / 6));
+            auto bsp = compile(open.map);
+            ASSERT_TRUE(bsp);
+            open.bsp = *std::move(bsp);
+            const LevelSolids solids = solids_of(open);
+            EXPECT_GT(solids.solids.size(), open.map.lines.size() / 2);
+            for (const LevelSolid& solid : solids.solids) EXPECT_TRUE(check(solid.shape));
+        }
+    }
+}
+
 TEST(LevelSolids, RefuseOddScales) {
     const Level level = ring();
     for (const double bad :

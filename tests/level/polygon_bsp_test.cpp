@@ -365,7 +365,7 @@ TEST(Rim, IsNoneOfClosedMeshesAndTheHoleOfOthers) {
     TriangleMesh open = triangles(Box{{1, 1, 1}});
     open.indices.resize(open.indices.size() - 3);
     EXPECT_EQ(rim_of(open).size(), 3u);
-    append(open, open);
+    append(open, TriangleMesh(open));
     const auto twice = rim_of(open);
     ASSERT_EQ(twice.size(), 3u);
     EXPECT_EQ(twice[0].times, 2);
