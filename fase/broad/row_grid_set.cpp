@@ -53,7 +53,7 @@ void RowSet::fit(std::span<const Move> boxes, const RowGridSettings& settings) {
 /// For the records and for what is read beyond them; grows only.
 void RowSet::make_room() {
     if (proxies_.size() >= count_ + row_slack) return;
-    const std::size_t room = count_ + count_ / 16 + row_slack;
+    const std::size_t room = count_ + (proxies_.empty() ? 0 : count_ / 16) + row_slack;
     proxies_.resize(room);
     // Columns a multiple of a page apart would all want the same places of a cache.
     stride_ = (room + 15) / 16 * 16;
@@ -156,8 +156,17 @@ void RowSet::place(TaskRunner* tasks) {
         std::uint32_t* const next = table_.data() + begin / part_length() * fit_.table;
         const float* const keys = columns_.data();
         Proxy* const order = proxies_.data();
-        for (std::size_t i = begin; i < end; ++i)
-            order[next[std::bit_cast<std::uint32_t>(keys[i])]++] = static_cast<std::uint32_t>(i);
+        const auto counter = [=](std::size_t i) { return next + std::bit_cast<std::uint32_t>(keys[i]); };
+        constexpr std::size_t ahead = 16;
+        std::size_t i = begin;
+        if (count_ >= row_grid::past_caches) {
+            for (; i + 2 * ahead < end; ++i) {
+                __builtin_prefetch(counter(i + 2 * ahead), 1);
+                __builtin_prefetch(order + *counter(i + ahead), 1);
+                order[(*counter(i))++] = static_cast<std::uint32_t>(i);
+            }
+        }
+        for (; i < end; ++i) order[(*counter(i))++] = static_cast<std::uint32_t>(i);
     });
 }
 

@@ -103,6 +103,9 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
     const auto far_away = hn::Set(d, largest_built);
     auto all_ordinary = hn::Eq(zero, zero);
     Counted found;
+    const bool later = boxes.size() >= past_caches;  // counters are on their way while other boxes are looked at
+    constexpr std::size_t behind = 32;
+    std::size_t counted = 0;
     for (std::size_t i = 0; i < boxes.size(); i += lanes) {
         const std::size_t count = std::min(lanes, boxes.size() - i);
         std::array<std::uint32_t, lanes> order;
@@ -137,9 +140,15 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
                 keys[i + k] = std::bit_cast<float>(counters[k]);
             }
         }
-        for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
+        if (later) {
+            for (std::size_t k = 0; k < count; ++k) __builtin_prefetch(table + counters[k], 1);
+            for (; counted + behind <= i; ++counted) ++table[std::bit_cast<std::uint32_t>(keys[counted])];
+        } else {
+            for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
+        }
         found.outside += hn::CountTrue(d, far);
     }
+    for (; later && counted < boxes.size(); ++counted) ++table[std::bit_cast<std::uint32_t>(keys[counted])];
     found.odd = !hn::AllTrue(d, all_ordinary);
     return found;
 }
