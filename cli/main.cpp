@@ -23,6 +23,7 @@
 #include "cli/bench_pairs.hpp"
 #include "cli/bench_queries.hpp"
 #include "cli/bench_step.hpp"
+#include "cli/bench_sudden.hpp"
 #endif
 
 namespace fase::cli {
@@ -35,6 +36,7 @@ void add_bench(CLI::App& app, Start& start) {
     add_bench_step(group, start);
     add_bench_pairs(group, start);
     add_bench_queries(group, start);
+    add_bench_sudden(group, start);
 }
 #endif
 

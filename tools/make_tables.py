@@ -236,6 +236,38 @@ def ratio_of_auto(rows):
     return f"{auto[0] / min(others):.2f}" if auto and others else ""
 
 
+SUDDEN_FIGURES = "bench/results/sudden.csv"
+SUDDEN_HEAD = """
+# Much at once
+
+From `{figures}`; rows are added with `build/release/fase bench sudden --csv {figures}`.
+
+Boxes stand or sleep, 2,000 move about among them. A frame is taking the boxes and finding all pairs, one thread, times that the
+processor worked. *nothing*: no event, to compare with; *wall*: one box in a hundred vanishes in one frame; *comes*: one more in each
+frame; *rain*: 1,000 come and 1,000 go in each frame; *wake*: all wake in one frame and move from then on; *rouse*: 500 wake in each frame.
+Pairs of the event's frame and of the last one were those of a plain sweep.
+"""
+SUDDEN_COLUMNS = ["event", "structure", "median ms", "mean ms", "worst ms", "worst / mean", "build ms", "pairs", "commit", "date"]
+
+
+def sudden_page_of(path):
+    """A table a machine and number of boxes; of several rows for the same the last one counts."""
+    last = {}
+    with path.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            last[row["machine"], row["boxes"], row["event"], row["structure"]] = row
+    parts = [SUDDEN_HEAD.format(figures=SUDDEN_FIGURES)]
+    for machine, boxes in dict.fromkeys((row["machine"], row["boxes"]) for row in last.values()):
+        lines = [f"## {boxes} boxes, {machine}", "", line_of(SUDDEN_COLUMNS), line_of(["---"] * len(SUDDEN_COLUMNS))]
+        for row in last.values():
+            if (row["machine"], row["boxes"]) == (machine, boxes):
+                number = [f"{float(row[key]):.3f}" for key in ("median_ms", "mean_ms", "worst_ms")]
+                lines.append(line_of([row["event"], row["structure"], *number, f"{float(row['worst_ms']) / float(row['mean_ms']):.2f}",
+                                      f"{float(row['build_ms']):.1f}", row["pairs"], row["commit"], row["date"]]))
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
 LEVEL_FIGURES = "bench/results/level.csv"
 LEVEL_HEAD = """
 # Levels
@@ -307,6 +339,8 @@ def main(arguments):
         text += pair_page_of(root / PAIR_FIGURES)
     if (root / LEVEL_FIGURES).is_file():
         text += level_page_of(root / LEVEL_FIGURES)
+    if (root / SUDDEN_FIGURES).is_file():
+        text += sudden_page_of(root / SUDDEN_FIGURES)
     if (root / QUERY_FIGURES).is_file():
         text += query_page_of(read_query_rows(root / QUERY_FIGURES))
     pages[page] = text
