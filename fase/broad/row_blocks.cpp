@@ -43,28 +43,44 @@ void RowBlocks::clear() { *this = {}; }
 
 void RowBlocks::erase(Proxy p) {
     FASE_ASSERT(holds(p));
-    gone_.push_back(std::exchange(spots_[p], {}));
+    const Spot spot = std::exchange(spots_[p], {});
+    Block& block = blocks_[spot.set / 2];
+    if (block.going == 0) losing_.push_back(spot.set / 2);
+    if (++block.going <= block.most_listed()) gone_.push_back(spot);
     --size_;
 }
 
-/// Empties the records of all that has been erased. Of blocks of which nothing is left, not even that.
+/// Empties the records of all that has been erased. Of a block of which nothing is left, not even that; in one that has
+/// lost many, those that are not listed are looked for.
 void RowBlocks::empty_records() {
-    touched_.clear();
-    for (const Spot spot : gone_)
-        if (blocks_[spot.set / 2].going++ == 0) touched_.push_back(spot.set / 2);
-    for (const std::uint32_t b : touched_)
-        if (std::exchange(blocks_[b].going, 0) == blocks_[b].live() && !blocks_[b].is_heir) drop_block(b);
+    for (const std::uint32_t b : losing_)
+        if (blocks_[b].going == blocks_[b].live() && !blocks_[b].is_heir) drop_block(b);
     for (const Spot spot : gone_)
         if (blocks_[spot.set / 2].used) set_at(spot.set).kill(spot.record);
-    for (const std::uint32_t b : touched_) look_at(b);
+    for (const std::uint32_t b : losing_) {
+        Block& block = blocks_[b];
+        if (!block.used) continue;
+        if (block.going > block.most_listed()) {
+            for (const std::uint32_t k : {2 * b, 2 * b + 1}) {
+                const Proxy* const proxies = set(k).view().proxies;
+                for (std::uint32_t i = 0; i < set(k).size(); ++i)
+                    if (proxies[i] != killed && spots_[proxies[i]] != Spot{k, i}) set_at(k).kill(i);
+            }
+        }
+        block.going = 0;
+        look_at(b);
+    }
+    losing_.clear();
     gone_.clear();
     keep_small(gone_);
 }
 
 void RowBlocks::commit(std::span<const Move> born, const RowGridSettings& settings) {
     if (born.empty() && !work_waits()) return;
-    std::size_t paid = block_most + 2 * (born.size() + gone_.size());
-    if (!gone_.empty()) empty_records();
+    std::size_t gone = 0;
+    for (const std::uint32_t b : losing_) gone += blocks_[b].going;
+    std::size_t paid = block_most + 2 * (born.size() + gone);
+    if (gone > 0) empty_records();
     if (!born.empty()) {
         Proxy largest = 0;
         for (const Move& m : born) largest = std::max(largest, m.proxy);

@@ -42,7 +42,7 @@ public:
     [[nodiscard]] Aabb box(Proxy p) const { return set(spots_[p].set).box(spots_[p].record); }
     [[nodiscard]] std::size_t size() const { return size_; }
     /// Has commit() anything to do when no box comes?
-    [[nodiscard]] bool work_waits() const { return !gone_.empty() || !worn_.empty() || !dissolving_.empty(); }
+    [[nodiscard]] bool work_waits() const { return !losing_.empty() || !worn_.empty() || !dissolving_.empty(); }
 
     /// The sets, two a block; some are empty.
     [[nodiscard]] std::size_t sets() const { return 2 * blocks_.size(); }
@@ -71,11 +71,13 @@ private:
         RowSet main, late;
         std::size_t late_work = 0;  // boxes that were sorted into `late` since `main` was made
         std::uint32_t coming = 0;   // of a commit under way: how many boxes, then where the next one goes
-        std::uint32_t going = 0;    // of a commit under way: how many records are to be emptied
+        std::uint32_t going = 0;    // records to be emptied at commit
         std::uint32_t holes = 0;    // empty records that `main` was made with
         std::uint8_t planes = 0;    // which of planes_ tell its boxes from others; or it dissolves
         bool used = false, waits = false, is_heir = false;
 
+        /// Of the records that are going, so many stand in `gone_`.
+        [[nodiscard]] std::size_t most_listed() const { return std::max<std::size_t>(1024, main.size() / 4); }
         [[nodiscard]] std::size_t dead() const { return main.dead() + late.dead(); }
         [[nodiscard]] std::size_t live() const { return main.size() + late.size() - dead(); }
         /// Sorting it anew costs no more than what has been and will be lost by not doing so.
@@ -86,6 +88,7 @@ private:
     };
     struct Spot {
         std::uint32_t set = none, record = 0;
+        friend constexpr bool operator==(Spot, Spot) = default;
     };
     std::array<BlockPlanes, 2> planes_;  // of usual boxes, of large ones
     float large_ = Aabb::infinity;       // a longer side makes a box a large one
@@ -98,9 +101,10 @@ private:
         std::vector<std::uint32_t> heirs;  // that have not got their boxes yet
     };
     std::vector<Dissolving> dissolving_;
-    PagedArray<Spot> spots_;  // by proxy
-    std::vector<Spot> gone_;  // records to be emptied at commit
-    BoxColumns bounds_;       // of the sets; NaN when empty
+    PagedArray<Spot> spots_;             // by proxy
+    std::vector<Spot> gone_;             // records to be emptied at commit
+    std::vector<std::uint32_t> losing_;  // their blocks
+    BoxColumns bounds_;                  // of the sets; NaN when empty
     std::size_t size_ = 0;
 
     // Scratch of commit(), kept for its memory.

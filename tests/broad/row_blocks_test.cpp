@@ -132,6 +132,22 @@ TEST(RowBlocks, DissolveALargeBlockThatIsWornAFewBoxesACommit) {
         EXPECT_LE(held.blocks.set(k).size(), RowBlocks::block_most * 9 / 8 + 1);
 }
 
+TEST(RowBlocks, LoseAnyShareOfTheirBoxesAtOnce) {
+    for (const Proxy kept_in : {2u, 3u, 10u, 1000u, 100000u}) {
+        Random random(4);
+        Held held;
+        held.add(20000, random, 40, 0.01f);
+        held.erase_if([&](const Move& m) { return m.proxy % kept_in != 1; });
+        held.add(100, random, 40, 0.01f);
+        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
+        const std::vector<Move> askers = askers_in(40, random);
+        ASSERT_TRUE(held.pairs_of(askers) == held.judged(askers));
+        held.erase_if([&](const Move& m) { return m.proxy >= 20000; });
+        held.blocks.commit({}, held.settings);
+        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
+    }
+}
+
 TEST(RowBlocks, KeepsWhatHasOneMiddleInOneBlock) {
     Held held;
     std::vector<Move> born;
