@@ -92,9 +92,13 @@ public:
             places_[m.proxy] = {};
         }
         constexpr std::size_t some = 4096;
-        if (ordinary_.capacity() > some) ordinary_ = {};
+        if (ordinary_.capacity() > some) ordinary_ = std::vector<Move>();  // {} would keep the room
         ordinary_.clear();
     }
+
+    /// Is there far more room than the ordinary boxes need?
+    [[nodiscard]] bool is_roomy() const { return ordinary_.capacity() > 8 * ordinary_.size() + 8192; }
+    void give_up_room() { ordinary_.shrink_to_fit(); }
 
     /// Takes room for these boxes, so that inserting them wastes none.
     void reserve(std::span<const Move> boxes) {

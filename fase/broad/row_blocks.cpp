@@ -24,7 +24,7 @@ void append(const RowSet& set, std::vector<Move>& out) {
 
 /// Frees what a rare large change has left behind.
 template <class T> void keep_small(std::vector<T>& scratch) {
-    if (scratch.capacity() > 2 * RowBlocks::block_most) scratch = {};
+    if (scratch.capacity() > 2 * RowBlocks::block_most) scratch = std::vector<T>();  // {} would keep the room
 }
 
 constexpr std::size_t a_hole_in = 8;  // boxes of a block that has lived

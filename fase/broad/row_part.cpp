@@ -44,7 +44,14 @@ void RowPart::commit(const RowGridSettings& settings, TaskRunner* tasks) {
         part(settings);
     }
     // What went into blocks has left the loose ones changed: that is settled here.
-    if (loose_.take_changed() || changed) sort(settings, tasks);
+    bool sorts = loose_.take_changed() || changed;
+    roomy_ = loose_.is_roomy() ? roomy_ + 1 : 0;
+    if (roomy_ == gives_up_room_after) {
+        loose_.give_up_room();
+        sorted_ = RowSet();
+        sorts = true;
+    }
+    if (sorts) sort(settings, tasks);
     next_watch_ -= next_watch_ > 0 ? 1 : 0;
     watches_ = next_watch_ == 0 && blocks_.size() == 0 && loose_.size() >= many;
     only_sorts_ = !watches_ && blocks_.size() == 0;
@@ -79,7 +86,7 @@ void RowPart::join() {
     settling_.clear();
     blocks_.give_up(settling_);
     for (const Move& m : settling_) loose_.insert(m.proxy, m.box);
-    settling_ = {};
+    settling_ = std::vector<Move>();
     calm_.clear();
 }
 

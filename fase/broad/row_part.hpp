@@ -66,15 +66,17 @@ public:
     [[nodiscard]] std::string broken_invariant() const;
 
 private:
-    static constexpr std::uint32_t calm_after = 8;   // commits without a move
-    static constexpr std::uint32_t watch_every = 8;  // commits, where much changes
-    BoxStore loose_;                                 // "awake": has moved since the last look at all
-    RowSet sorted_;                                  // the ordinary ones of loose_
+    static constexpr std::uint32_t calm_after = 8;            // commits without a move
+    static constexpr std::uint32_t gives_up_room_after = 64;  // commits
+    static constexpr std::uint32_t watch_every = 8;           // commits, where much changes
+    BoxStore loose_;                                          // "awake": has moved since the last look at all
+    RowSet sorted_;                                           // the ordinary ones of loose_
     RowBlocks blocks_;
     bool only_sorts_ = true;        // no blocks, and nobody watches
     bool watches_ = false;          // notes what changes after a commit, until it is too much
     std::vector<Proxy> changed_;    // noted
     std::uint32_t next_watch_ = 0;  // commits until then
+    std::uint32_t roomy_ = 0;       // commits with far more room than is needed
     std::uint32_t age_ = 0;         // commits since the last look at what is calm
     std::vector<Proxy> calm_;       // loose ones that are to go into blocks
     std::vector<Move> settling_;    // scratch

@@ -104,6 +104,19 @@ TEST(RowPart, SortsAllAnewWhenMostMove) {
     ASSERT_EQ(part.broken_invariant(), "");
 }
 
+TEST(RowPart, TakesNoMoreMemoryThanItsBoxesNeed) {
+    World world(30000, 5);
+    RowGrid still, asleep;
+    still.build_still(world.boxes);
+    EXPECT_LT(still.bytes(), 60u * 30000);
+    asleep.build(world.boxes);
+    EXPECT_LT(asleep.bytes(), 90u * 30000);
+    for (const Move& m : world.boxes) asleep.set_awake(m.proxy, false);
+    for (int step = 0; step < 70; ++step) asleep.commit();
+    EXPECT_LT(asleep.bytes(), 70u * 30000) << "no room is kept for what has long been asleep";
+    EXPECT_EQ(asleep.broken_invariant(), "");
+}
+
 TEST(RowPart, ForgetsBlocksOfWhichNothingIsLeft) {
     World world(9000, 3);
     RowPart part;
