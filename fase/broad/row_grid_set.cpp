@@ -20,6 +20,7 @@ std::uint32_t ordered_bits(float v) {
 
 constexpr std::size_t most_parts = 4;      // each counts in a table of its own
 constexpr std::size_t part_least = 16384;  // boxes of a part
+constexpr std::size_t gather_grain = 8192;
 
 template <class F> void for_ranges(TaskRunner* tasks, std::size_t count, std::size_t grain, const F& body) {
     if (tasks != nullptr) return parallel_ranges(*tasks, count, grain, body);
@@ -87,8 +88,8 @@ bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings,
         *this = {};
         return false;
     }
-    sum_counts(tasks);
-    place(tasks);
+    sum_counts();
+    place();
     for (RowLevel& level : fit_.levels) {
         const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
         level.first = table()[level.table];
@@ -124,41 +125,29 @@ bool RowSet::count(std::span<const Move> boxes, const RowGridSettings& settings,
 
 /// A cell's counter stands one place behind the cell. It becomes where the boxes of the part go; once all are placed,
 /// where those of the next part begin and, of the last part, where the next cell does.
-void RowSet::sum_counts(TaskRunner* tasks) {
+void RowSet::sum_counts() {
     std::uint32_t* const counters = table_.data();
-    const std::size_t length = fit_.table, parts = parts_;
-    const auto sum = [=](std::size_t begin, std::size_t end, std::uint32_t first) {
-        for (std::size_t k = begin; k < end; ++k)
-            for (std::size_t at = k; at < parts * length; at += length) first += std::exchange(counters[at], first);
-    };
-    if (tasks == nullptr) {
-        std::uint32_t before = 0;
+    const std::size_t length = fit_.table;
+    std::uint32_t before = 0;
+    if (parts_ == 1) {
         for (std::size_t k = 0; k < length; ++k) before += std::exchange(counters[k], before);
         return;
     }
-    constexpr std::size_t grain = 1 << 15;
-    sums_.assign(length / grain + 1, 0);
-    for_ranges(tasks, length, grain, [&](std::size_t begin, std::size_t end) {
-        std::uint32_t all = 0;
-        for (std::size_t part = 0; part < parts; ++part)
-            for (std::size_t k = begin; k < end; ++k) all += counters[part * length + k];
-        sums_[begin / grain] = all;
-    });
-    std::uint32_t before = 0;
-    for (std::uint32_t& block : sums_) before += std::exchange(block, before);
-    for_ranges(tasks, length, grain,
-               [&](std::size_t begin, std::size_t end) { sum(begin, end, sums_[begin / grain]); });
+    for (std::size_t k = 0; k < length; ++k)
+        for (std::size_t at = k; at < parts_ * length; at += length) before += std::exchange(counters[at], before);
 }
 
-/// The numbers of the boxes, in the order of cells; those of a cell in the order in which they came.
-void RowSet::place(TaskRunner* tasks) {
-    for_ranges(tasks, count_, part_length(), [&](std::size_t begin, std::size_t end) {
-        std::uint32_t* const next = table_.data() + begin / part_length() * fit_.table;
-        const float* const keys = columns_.data();
-        Proxy* const order = proxies_.data();
+/// The numbers of the boxes, in the order of cells; those of a cell in the order in which they came. By one thread: two
+/// would write to the same lines of memory in turns.
+void RowSet::place() {
+    const float* const keys = columns_.data();
+    Proxy* const order = proxies_.data();
+    constexpr std::size_t ahead = 16;
+    for (std::size_t part = 0; part < parts_; ++part) {
+        std::uint32_t* const next = table_.data() + part * fit_.table;
         const auto counter = [=](std::size_t i) { return next + std::bit_cast<std::uint32_t>(keys[i]); };
-        constexpr std::size_t ahead = 16;
-        std::size_t i = begin;
+        const std::size_t end = std::min(count_, (part + 1) * part_length());
+        std::size_t i = part * part_length();
         if (count_ >= row_grid::past_caches) {
             for (; i + 2 * ahead < end; ++i) {
                 __builtin_prefetch(counter(i + 2 * ahead), 1);
@@ -167,14 +156,14 @@ void RowSet::place(TaskRunner* tasks) {
             }
         }
         for (; i < end; ++i) order[(*counter(i))++] = static_cast<std::uint32_t>(i);
-    });
+    }
 }
 
 void RowSet::gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks) {
     std::array<float*, 6> columns;
     const std::array<std::size_t, 6> places = column_places();
     for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
-    const std::size_t grain = tasks == nullptr ? std::max(level.count, 1u) : std::size_t{1} << 13;
+    const std::size_t grain = tasks == nullptr || level.count < part_least ? std::max(level.count, 1u) : gather_grain;
     reaches_.assign(level.count / grain + 1, {});
     for_ranges(tasks, level.count, grain, [&](std::size_t begin, std::size_t end) {
         reaches_[begin / grain] =

@@ -178,14 +178,13 @@ private:
     };
     std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
     std::vector<std::array<float, 3>> reaches_;   // scratch of gather
-    std::vector<std::uint32_t> sums_;             // scratch of sum_counts
     RowSample sample_;                            // scratch of fit
 
     void fit(std::span<const Move> boxes, const RowGridSettings& settings);
     void make_room();
     [[nodiscard]] bool count(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks);
-    void sum_counts(TaskRunner* tasks);
-    void place(TaskRunner* tasks);
+    void sum_counts();
+    void place();
     void gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks);
     [[nodiscard]] std::size_t part_length() const { return (count_ + parts_ - 1) / parts_; }
     [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
