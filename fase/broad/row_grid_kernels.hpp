@@ -49,7 +49,8 @@ struct Counted {
     std::size_t outside = 0;  ///< boxes that lie outside of their level's cells by more than the size of one
     bool odd = false;         ///< one of them is not ordinary
 };
-/// Writes to keys[i] (as bits of a float) which counter of `table` box i belongs to, and counts it there.
+/// Writes to keys[i] (as bits of a float) which counter of `table` box i belongs to, and counts it there. Up to 8 keys
+/// more may be written over.
 Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table);
 
 /// Puts box order[i] into place i of the columns, for `begin` <= i < `end`, and its proxy over order[i]. Returns the

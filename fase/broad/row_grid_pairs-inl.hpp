@@ -225,13 +225,15 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
     for (batch.begin = begin; batch.begin < end; batch.begin = batch.end) {
         batch.end = std::min(end, batch.begin + batch_size);
         sort_out(set, level, c, batch);
-        // What the next batch is going to be tested against and no earlier one was.
-        const std::size_t last_cell = batch.to[batch.end - batch.begin - 1] + farthest;
-        const std::size_t wanted =
-            std::min<std::size_t>(rows.table[std::min(cells, last_cell)] + batch_size, level.first + level.count);
-        if (fetched + 4 * batch_size < wanted) fetched = wanted - 4 * batch_size;
-        for (; fetched < wanted; fetched += 16)
-            for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + fetched);
+        if (set.count >= past_caches) {
+            // What the next batch is going to be tested against and no earlier one was.
+            const std::size_t last_cell = batch.to[batch.end - batch.begin - 1] + farthest;
+            const std::size_t wanted =
+                std::min<std::size_t>(rows.table[std::min(cells, last_cell)] + batch_size, level.first + level.count);
+            if (fetched + 4 * batch_size < wanted) fetched = wanted - 4 * batch_size;
+            for (; fetched < wanted; fetched += 16)
+                for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + fetched);
+        }
         test_kind<false, false>(rows, c, batch, block);
         test_kind<false, true>(rows, c, batch, block);
         test_kind<true, false>(rows, c, batch, block);

@@ -186,7 +186,8 @@ private:
     void sum_counts();
     void place();
     void gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks);
-    [[nodiscard]] std::size_t part_length() const { return (count_ + parts_ - 1) / parts_; }
+    /// A multiple of 64: count_cells() writes keys by the vector, and must not write over those of another part.
+    [[nodiscard]] std::size_t part_length() const { return ((count_ + parts_ - 1) / parts_ + 63) / 64 * 64; }
     [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
     RecordSpan shift(std::uint32_t hole, std::uint32_t place);
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;

@@ -126,7 +126,7 @@ TEST(RowGrid, StoresTheSameWithAnyNumberOfThreads) {
 TEST(RowGrid, StoresTheSameWhenItFetchesAhead) {
     const std::vector<Move> boxes = gas(row_grid::past_caches + 5, 14);
     std::vector<Pair> serial;
-    for (const int threads : {1, 2}) {
+    for (const int threads : {1, 2, 3}) {
         const auto tasks = make_thread_runner(threads);
         RowGrid grid;
         for (const Move& m : boxes) grid.insert(m.proxy, m.box);
