@@ -34,8 +34,8 @@ TEST(Run, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_EQ(text_at(run, "hash").size(), 16u);
     EXPECT_EQ(run.find("warnings")->size(), 0u);
     EXPECT_EQ(keys_of(*run.find("ms_per_step")), (std::set<std::string>{"mean", "median", "worst"}));
-    EXPECT_EQ(keys_of(*run.find("stages")),
-              (std::set<std::string>{"refresh", "pairs", "collide", "islands", "solve", "finish", "events", "sleep"}));
+    EXPECT_EQ(keys_of(*run.find("stages")), (std::set<std::string>{"refresh", "pairs", "collide", "islands", "solve",
+                                                                   "finish", "events", "sleep", "queries"}));
     const scene::JsonValue ms = *run.find("ms_per_step");
     EXPECT_GE(number_at(ms, "worst"), number_at(ms, "mean"));
 }
