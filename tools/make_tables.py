@@ -205,7 +205,7 @@ Made from `{figures}`. To renew it: `tools/measure_structures.py && tools/make_t
 
 Traces of `fase generate`, played by `fase pairs`; one thread. A frame's time is that of taking its boxes and finding all its pairs, which
 were those of the judge in every frame. In a cell: median ms (worst), bytes a box, depth, boxes in a leaf. `auto` chooses for itself; the
-last line is its median over that of the quickest other one.
+last line is its median over that of the quickest other one. Of three runs in turns the quickest counts.
 """
 
 
