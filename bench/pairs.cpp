@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 
 #include "bench/pair_engine.hpp"
@@ -20,10 +19,6 @@ namespace {
 /// Frames that an engine takes before another has its turn: few, so that noise meets all; several, so that each works
 /// with its own data in the caches most of the time.
 constexpr std::uint64_t frames_a_turn = 6;
-
-/// Milliseconds that the processor has worked for this program: all is done by one thread, and other programs do not
-/// count.
-double ms_worked() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
 
 /// Engines of a list like "row_grid,peers", in the order of THE list.
 Result<std::vector<const PairEngineInfo*>> engines_named(const std::string& names) {
@@ -60,16 +55,6 @@ struct Contender {
     Hasher hash;
     PairBenchRow row;
 };
-
-std::vector<Population> populations_of(const record::TraceReader& trace) {
-    std::vector<Population> populations;
-    for (const std::uint8_t flag : trace.flags()) {
-        populations.push_back((flag & record::trace_static) != 0   ? Population::Static
-                              : (flag & record::trace_asleep) != 0 ? Population::Asleep
-                                                                   : Population::Awake);
-    }
-    return populations;
-}
 
 broad::PairSetPrint judged(const PairScene& scene) {
     std::vector<broad::Move> moves;
@@ -151,6 +136,16 @@ void sum_up(Contender& contender) {
 }
 
 }  // namespace
+
+std::vector<Population> populations_of(const record::TraceReader& trace) {
+    std::vector<Population> populations;
+    for (const std::uint8_t flag : trace.flags()) {
+        populations.push_back((flag & record::trace_static) != 0   ? Population::Static
+                              : (flag & record::trace_asleep) != 0 ? Population::Asleep
+                                                                   : Population::Awake);
+    }
+    return populations;
+}
 
 Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, const PairBenchOptions& options,
                                                        const PairBenchProgress& progress) {

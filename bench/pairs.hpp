@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "bench/timing.hpp"
+#include "fase/broad/pair_finder.hpp"
 #include "fase/core/result.hpp"
+#include "fase/record/trace.hpp"
 
 namespace fase::bench {
 
@@ -34,6 +36,9 @@ struct PairBenchRow {
     std::size_t bytes = 0;     ///< 0: it cannot say
     bool right = true;         ///< the pairs of each frame were those of the plain sweep, or of the first engine
 };
+
+/// The populations that a trace's flags name.
+[[nodiscard]] std::vector<broad::Population> populations_of(const record::TraceReader& trace);
 
 /// Told before each turn: frames done, of so many, and whose turn it is. Returns false to stop.
 using PairBenchProgress =

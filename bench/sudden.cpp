@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 
 #include "fase/broad/pair_finder.hpp"
 #include "fase/broad/pair_hash.hpp"
@@ -17,8 +16,6 @@ namespace fase::bench {
 namespace {
 
 using broad::Population;
-
-double ms_worked() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
 
 /// Boxes of about a metre, two cubic metres for each; the first few move.
 struct Stage {

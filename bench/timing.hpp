@@ -2,10 +2,15 @@
 /// Many measured times as the few numbers that tables show.
 #include <algorithm>
 #include <cstddef>
+#include <ctime>
 #include <span>
 #include <vector>
 
 namespace fase::bench {
+
+/// Milliseconds that the processor has worked for this program: for what one thread does, so that other programs do not
+/// count.
+[[nodiscard]] inline double ms_worked() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
 
 /// Of many times; milliseconds.
 struct Timing {

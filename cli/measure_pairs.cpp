@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 
+#include "bench/pairs.hpp"
 #include "fase/broad/plain_sweep.hpp"
 #include "fase/core/random.hpp"
 #include "fase/pairs/pair_tracker.hpp"
@@ -81,11 +82,14 @@ double brute_force_seconds(std::span<const Aabb> boxes, const TraceSurvey& surve
 /// What is measured of a structure, frame by frame.
 class Player {
 public:
-    Player(const StructureChoice& choice, bool changes, TaskRunner& tasks)
-        : tasks_(tasks),
-          changes_(changes),
-          tracker_(choice.asked == "auto" ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty)) {
-        if (!changes) finder_ = tracker_.finder();
+    Player(const StructureChoice& choice, bool changes, TaskRunner& tasks) : tasks_(tasks), changes_(changes) {
+        broad::PairFinder empty =
+            choice.asked == "auto" ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty);
+        if (changes) {
+            tracker_ = pairs::PairTracker(std::move(empty));
+        } else {
+            finder_ = std::move(empty);
+        }
     }
     void build(std::span<const Aabb> boxes, std::span<const Population> populations) {
         if (changes_) {
@@ -122,8 +126,8 @@ public:
 private:
     TaskRunner& tasks_;
     bool changes_;
-    pairs::PairTracker tracker_;
-    broad::PairFinder finder_;
+    pairs::PairTracker tracker_;  // of changes
+    broad::PairFinder finder_;    // of all pairs
     std::vector<Pair> pairs_;
     pairs::PairChanges told_;
     broad::PairSetPrint print_;
@@ -131,12 +135,12 @@ private:
 
 /// Which structures an automatic choice ended with: that of most boxes is named first.
 void tell_choice(const broad::PairFinder& finder, std::span<const Population> populations, PairFigures& figures) {
-    std::array<std::size_t, 3> counts{};
+    std::array<std::size_t, 4> counts{};  // absent boxes stand nowhere
     for (Proxy p = 0; p < populations.size(); ++p) ++counts[static_cast<std::size_t>(finder.population(p))];
     constexpr std::array<std::string_view, 3> names{"awake", "asleep", "static"};
     static_assert(static_cast<int>(Population::Awake) == 0 && static_cast<int>(Population::Static) == 2);
     std::size_t most = 0;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
         if (counts[i] == 0) continue;
         const broad::SuitedStructure chosen = finder.chosen(static_cast<Population>(i));
         figures.reason += fmt::format("{}{} {}: {} ({})", figures.reason.empty() ? "" : "; ", counts[i], names[i],
@@ -148,21 +152,10 @@ void tell_choice(const broad::PairFinder& finder, std::span<const Population> po
 
 }  // namespace
 
-std::vector<Population> populations_of(const record::TraceReader& trace) {
-    std::vector<Population> populations;
-    populations.reserve(trace.boxes());
-    for (const std::uint8_t flag : trace.flags()) {
-        populations.push_back((flag & record::trace_static) != 0   ? Population::Static
-                              : (flag & record::trace_asleep) != 0 ? Population::Asleep
-                                                                   : Population::Awake);
-    }
-    return populations;
-}
-
 Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell) {
     TraceSurvey seen;
     seen.frames = frames == 0 ? trace.frames() : std::min<std::uint64_t>(frames, trace.frames());
-    const std::vector<Population> populations = populations_of(trace);
+    const std::vector<Population> populations = bench::populations_of(trace);
     const auto count = [&](Population one) {
         return static_cast<std::uint64_t>(std::count(populations.begin(), populations.end(), one));
     };
@@ -208,7 +201,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     const auto start = Clock::now();
     const bool automatic = choice.asked == "auto";
     Player player(choice, changes, tasks);
-    const std::vector<Population> populations = populations_of(trace);
+    const std::vector<Population> populations = bench::populations_of(trace);
     const auto begin_of_build = Clock::now();
     player.build(boxes, populations);
     figures.build_ms = ms_since(begin_of_build);

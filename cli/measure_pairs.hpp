@@ -42,9 +42,6 @@ struct TraceSurvey {
     std::vector<broad::PairSetPrint> judged;  ///< a frame: its right pairs; empty: not asked
 };
 
-/// The populations that a trace's flags name.
-[[nodiscard]] std::vector<broad::Population> populations_of(const record::TraceReader& trace);
-
 /// Reads `frames` frames (0: all) and so judges the file; with `judge` finds their pairs by trying all (up to 1,000
 /// boxes) or with a plain sweep. Format as of TraceReader; Capacity for a frame with more pairs than 2^28, guessed
 /// from a sample of its boxes.

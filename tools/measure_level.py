@@ -7,8 +7,6 @@ lumps that it wrote, by `fase level --lumps nodes --check`. The time of a single
 Then tools/make_tables.py.
 """
 import argparse
-import csv
-import datetime
 import json
 import os
 import shutil
@@ -19,7 +17,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from measure_structures import machine_name
+from figures import origin_of, write_table
 
 FREEDOOM = [Path("/usr/share/games/doom") / name for name in ("freedoom1.wad", "freedoom2.wad")]
 FIELDS = ["machine", "date", "commit", "compiler", "settings", "wad", "map", "lines", "sides", "segs", "splits", "nodes",
@@ -138,15 +136,10 @@ def main():
     wads = options.wads or [wad for wad in FREEDOOM if wad.is_file()]
     if not wads:
         raise SystemExit("measure_level.py: error: found no WAD, need one, or Debian's package freedoom")
-    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
-                            stdout=subprocess.PIPE, text=True).stdout.strip()
-    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    about = origin_of(options.repository)
     with tempfile.TemporaryDirectory() as folder:
         rows = [about | row for wad in wads for row in measure(str(options.program), wad, options.rounds, folder)]
-    with (options.repository / "bench/results/level.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(options.repository / "bench/results/level.csv", FIELDS, rows)
     return 0
 
 

@@ -5,15 +5,13 @@ Usage: measure_sizes.py [--program build/release/fase] [--kind uniform] [--most 
 `fase generate`; what takes more than a few seconds for it is left out. Then tools/make_tables.py.
 """
 import argparse
-import csv
-import datetime
 import json
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from measure_structures import machine_name
+from figures import origin_of, write_table
 
 FIELDS = ["machine", "date", "commit", "trace", "boxes", "structure", "threads", "told", "frames", "mean_ms", "median_ms", "worst_ms",
           "least_ms", "pairs"]
@@ -48,16 +46,11 @@ def main():
     parser.add_argument("--most", type=int, default=1000000)
     parser.add_argument("repository", nargs="?", default=Path(__file__).parent.parent, type=Path)
     options = parser.parse_args()
-    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
-                            stdout=subprocess.PIPE, text=True).stdout.strip()
-    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    about = origin_of(options.repository)
     sizes = [round(10 ** (k / 2)) for k in range(4, 13) if round(10 ** (k / 2)) <= options.most]
     with tempfile.TemporaryDirectory() as folder:
         rows = [about | row for size in sizes for row in rows_of(str(options.program), options.kind, size, folder)]
-    with (options.repository / "bench/results/sizes.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(options.repository / "bench/results/sizes.csv", FIELDS, rows)
     return 0
 
 

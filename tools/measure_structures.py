@@ -5,26 +5,17 @@ Usage: measure_structures.py [--program build/release/fase] [--counts 100 1000 1
 `fase generate`, and its pairs are held against the judge before its row is written. Then tools/make_tables.py.
 """
 import argparse
-import csv
-import datetime
 import json
-import platform
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from figures import origin_of, write_table
+
 KINDS = ["uniform", "clusters", "flat", "mixed", "static", "asleep", "coincident", "lattice", "explosion", "rain", "pile"]
 FIELDS = ["machine", "date", "commit", "trace", "boxes", "frames", "structure", "build_ms", "mean_ms", "median_ms", "worst_ms",
           "bytes_a_box", "depth", "boxes_a_leaf", "pairs"]
-
-
-def machine_name():
-    """The processor's name and the number of its cores that may be used."""
-    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
 
 
 def rows_of(program, kind, count, frames, folder):
@@ -55,16 +46,11 @@ def main():
     parser.add_argument("--frames", type=int, default=40)
     parser.add_argument("repository", nargs="?", default=Path(__file__).parent.parent, type=Path)
     options = parser.parse_args()
-    commit = subprocess.run(["git", "-C", options.repository, "rev-parse", "--short", "HEAD"], check=True,
-                            stdout=subprocess.PIPE, text=True).stdout.strip()
-    about = {"machine": machine_name(), "date": datetime.date.today().isoformat(), "commit": commit}
+    about = origin_of(options.repository)
     with tempfile.TemporaryDirectory() as folder:
         rows = [about | row for count in options.counts for kind in KINDS
                 for row in rows_of(str(options.program), kind, count, options.frames * (10 if count < 10000 else 1), folder)]
-    with (options.repository / "bench/results/structures.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(options.repository / "bench/results/structures.csv", FIELDS, rows)
     return 0
 
 

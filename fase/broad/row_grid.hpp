@@ -1,5 +1,5 @@
 #pragma once
-/// A grid of several levels whose boxes lie sorted in rows, made anew at each commit.
+/// A grid of several levels whose boxes lie sorted in rows: made anew for what moves, changed in place for what rests.
 #include <cstdint>
 #include <span>
 
@@ -12,11 +12,12 @@ namespace fase::broad {
 /// box. Cells along one axis form a row, and the boxes of a row lie behind each other in memory, in six columns of
 /// coordinates: what a box may overlap are ranges of its own row and of its neighbours, which are tested a vector at a
 /// time. Nothing is carried over from step to step but the choice of the cells, which follows from a sample of the
-/// boxes now and then: all can move in every step. Boxes that rest stand in a second grid of their own, which is made
-/// anew only when one of them is touched. Boxes that no grid can hold (infinite, NaN, inverted, beyond 1e17 m) are kept
-/// apart and tested one by one.
-/// insert, move, erase: O(1) until commit; there O(n). All pairs: O(n + pairs) when boxes are spread. A query: the rows
-/// that its bounds reach. Memory is bounded by the number of boxes, wherever they are.
+/// boxes now and then: all can move in every step. Boxes that rest, and most of a set of which few move, stand in
+/// blocks, which change in place (RowBlocks). Boxes that no grid can hold (infinite, NaN, inverted, beyond 1e17 m) are
+/// kept apart and tested one by one.
+/// insert, move, erase: O(1) until commit; there O(boxes that are not in blocks), and for those in blocks O(changes).
+/// All pairs: O(n + pairs) when boxes are spread. A query: the rows that its bounds reach. Memory is bounded by the
+/// number of boxes, wherever they are.
 class RowGrid {
 public:
     static constexpr StructureInfo info{

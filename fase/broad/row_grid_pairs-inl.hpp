@@ -81,6 +81,7 @@ struct Batch {
     std::array<std::uint32_t, batch_size + width> from, to, from_z0;
 };
 
+/// Looks up the cells that matter to each record of a batch, and puts it to those of its kind.
 inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c, Batch& batch) {
     const FloatTag d;
     const WordTag dw;
@@ -200,6 +201,7 @@ HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batc
     return with_long;
 }
 
+/// Tests all records of a batch that reach the same neighbours.
 template <bool reaches_y, bool reaches_z>
 HWY_INLINE void test_kind(const Neighbours& rows, const Columns& columns, Batch& batch, PairBlock& block) {
     std::size_t with_long = 0;
@@ -295,6 +297,7 @@ inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::si
     }
 }
 
+/// See row_grid::find_own_pairs.
 void find_own_pairs_wide(const RowView& set, std::size_t begin, std::size_t end, PairBlock& block) {
     const Columns c(set);
     for (std::size_t k = 0; k < set.levels.size(); ++k) {
@@ -311,6 +314,7 @@ void find_own_pairs_wide(const RowView& set, std::size_t begin, std::size_t end,
     }
 }
 
+/// Without branches: this is asked of every asker.
 inline bool has_nan(const Aabb& box) {
     const bool lo = (box.lo.x != box.lo.x) | (box.lo.y != box.lo.y) | (box.lo.z != box.lo.z);
     return lo | (box.hi.x != box.hi.x) | (box.hi.y != box.hi.y) | (box.hi.z != box.hi.z);
@@ -339,6 +343,7 @@ HWY_INLINE void ask_range(const MakeAsker& make_asker, Proxy mine, std::span<con
     }
 }
 
+/// See row_grid::find_asked_pairs.
 void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& block) {
     const Columns c(set);
     Writer out(block);

@@ -111,9 +111,7 @@ void drop_collider(WorldState& state, std::uint32_t index) {
     boxes.erase(std::span(&index, 1));
     release_shape(state, collider.shape);
     state.collider_ids.remove(*state.collider_ids.id_at(index));
-    note_box(state, index);
-    if (!(state.changes[index] & edited)) state.edited_colliders.push_back(index);
-    state.changes[index] |= edited;
+    note_edit(state, index);
     state.removed_any = true;
 }
 
@@ -144,9 +142,7 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, const Shape& sha
     const broad::Move move{id.index, state.boxes[id.index]};
     broad::AnyStructure& boxes = boxes_of(state, traits.population);
     boxes.insert(std::span(&move, 1));
-    note_box(state, id.index);
-    if (!(state.changes[id.index] & edited)) state.edited_colliders.push_back(id.index);
-    state.changes[id.index] |= edited;
+    note_edit(state, id.index);
     if (!(frame_before == traits.principal)) renew_boxes(state, body);
     return id;
 }

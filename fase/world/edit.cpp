@@ -19,14 +19,18 @@ Error refused(std::string where, std::string found, std::string need, std::strin
     return {Status::BadArgument, std::move(where), "found " + found + ", need " + need, std::move(remedy)};
 }
 
+void note_edit(WorldState& state, std::uint32_t collider) {
+    note_box(state, collider);
+    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);
+    state.changes[collider] |= edited;
+}
+
 void renew_box(WorldState& state, std::uint32_t collider) {
     state.boxes[collider] = reaching_box(state, collider, 0, 0);
     const broad::Move move{collider, state.boxes[collider]};
     broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[state.colliders[collider].body].population);
     boxes.move(std::span(&move, 1));
-    note_box(state, collider);
-    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);
-    state.changes[collider] |= edited;
+    note_edit(state, collider);
 }
 
 void renew_boxes(WorldState& state, std::uint32_t body) {

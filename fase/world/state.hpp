@@ -158,6 +158,9 @@ struct WorldState {
 [[nodiscard]] broad::AnyStructure& boxes_of(WorldState& state, dynamics::Population population);
 /// To be told whenever a collider comes, goes, gets another box or its body another population: for the queries' trees.
 void note_box(const WorldState& state, std::uint32_t collider);
+/// To be told whenever the user made, moved, changed or removed a collider: its pairs are looked at in the next step.
+/// Notes its box, too.
+void note_edit(WorldState& state, std::uint32_t collider);
 
 // Lists and populations (world/populations.cpp).
 /// The pose of a collider's shape: rotation in the world, and its place relative to the body's centre of mass.

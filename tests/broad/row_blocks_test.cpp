@@ -9,14 +9,10 @@
 #include "fase/broad/brute_force.hpp"
 #include "fase/broad/find_pairs.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
-
-Vec3 place(Random& random, float from, float to) {
-    const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
-    return {x, y, z};
-}
 
 /// Blocks and the list of what they should hold.
 struct Held {

@@ -10,16 +10,13 @@
 #include "fase/broad/row_grid_kernels.hpp"
 #include "fase/broad/row_grid_walk.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
 
 using Rows = RowGridSettings::Rows;
 
-Vec3 place(Random& random, float from, float to) {
-    const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
-    return {x, y, z};
-}
 std::vector<Pair> sorted(std::vector<Pair> pairs) {
     std::sort(pairs.begin(), pairs.end());
     return pairs;

@@ -12,16 +12,12 @@
 #include "fase/broad/find_pairs.hpp"
 #include "fase/broad/stats.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
 
 using Rows = RowGrid::Settings::Rows;
-
-Vec3 place(Random& random, float from, float to) {
-    const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
-    return {x, y, z};
-}
 
 /// Boxes of sides 0.5 to 1.5 in a cube, about two neighbours each.
 std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}) {
@@ -39,17 +35,6 @@ std::vector<Pair> found(const RowGrid& grid) {
     std::vector<Pair> pairs;
     grid.find_pairs(pairs);
     return pairs;
-}
-template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
-    std::vector<Pair> pairs;
-    find_pairs(structure, pairs);
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
-std::vector<Pair> judged(const std::vector<Move>& boxes) {
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
-    return sorted_pairs(judge);
 }
 RowGrid grid_of(const std::vector<Move>& boxes, const RowGrid::Settings& settings = {}) {
     RowGrid grid(settings);

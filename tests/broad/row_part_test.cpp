@@ -10,14 +10,10 @@
 #include "fase/broad/find_pairs.hpp"
 #include "fase/broad/row_grid.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
-
-Vec3 place(Random& random, float from, float to) {
-    const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
-    return {x, y, z};
-}
 
 struct World {
     Random random;
@@ -41,24 +37,6 @@ struct World {
         }
     }
 };
-
-template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
-    std::vector<Pair> pairs;
-    find_pairs(structure, pairs);
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
-std::vector<Pair> judged(const std::vector<Move>& boxes) {
-    RowSet set;
-    set.build(boxes, {});
-    std::vector<Pair> pairs;
-    {
-        row_grid::PairBlock block(pairs);
-        row_grid::find_own_pairs(set.view(), 0, set.size(), block);
-    }
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
 
 TEST(RowPart, LeavesBoxesWhereTheyStandWhenFewOfManyMove) {
     World world(20000, 1);

@@ -8,9 +8,8 @@
 #include <fstream>
 #include <map>
 
-#include "fase/broad/brute_force.hpp"
 #include "fase/broad/stats.hpp"
-#include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 
@@ -59,18 +58,6 @@ inline std::map<std::string, std::vector<Move>> hard_sets() {
     return numbered_sets;
 }
 
-template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
-    std::vector<Pair> pairs;
-    structure.find_pairs(pairs);
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
-inline std::vector<Pair> true_pairs(const std::vector<Move>& boxes) {
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
-    return sorted_pairs(judge);
-}
-
 /// Region that counts how many boxes it was asked about.
 struct CountingRegion {
     Aabb box;
@@ -92,7 +79,7 @@ template <class S> void expect_sound(S& structure, const std::vector<Move>& boxe
     EXPECT_LE(stats.nodes, 2 * boxes.size());
     EXPECT_LT(stats.depth, 100);
     EXPECT_LT(stats.bytes, 400 * boxes.size() + 4096);
-    EXPECT_TRUE(sorted_pairs(structure) == true_pairs(boxes));
+    EXPECT_TRUE(sorted_pairs(structure) == judged(boxes));
 }
 
 /// The boxes of a file of `min max` lines that others have made; empty when it is missing.

@@ -63,12 +63,6 @@ Ray random_ray(Random& random) {
     return {to_double(in_cube(random, 8)), direction(random), random.below(2) == 0 ? inf : random.between(0, 10)};
 }
 
-template <class T> T opened(Result<T> result) {
-    EXPECT_TRUE(result) << (result ? "" : result.error().text());
-    return result ? *result : T{};
-}
-void opened(const Result<void>& result) { EXPECT_TRUE(result) << (result ? "" : result.error().text()); }
-
 void expect_rays_right(const World& world, Random& random, int count) {
     const std::vector<Seen> all = all_of(world);
     for (int i = 0; i < count; ++i) {
@@ -170,17 +164,6 @@ void expect_nearest_right(const World& world, Random& random, int count) {
             EXPECT_NEAR(length(got[j].point - point), wanted[j].first, 1e-6);
         }
     }
-}
-
-Frustum box_frustum(Vec3d centre, Quat turned, Vec3d half) {
-    Frustum frustum;
-    for (int i = 0; i < 6; ++i) {
-        Vec3d axis;
-        axis[i / 2] = i % 2 == 0 ? -1 : 1;
-        const Vec3d normal = rotate(normalized(to_double(turned)), axis);
-        frustum.sides[static_cast<std::size_t>(i)] = {normal, dot(normal, centre) + half[i / 2]};
-    }
-    return frustum;
 }
 
 void expect_views_right(const World& world, Random& random, int count) {
@@ -543,93 +526,6 @@ TEST(Query, threads_may_ask_at_once_right_after_edits) {
         EXPECT_EQ(wrong, 0);
         for (std::size_t t = 1; t < 4; ++t) EXPECT_EQ(points[t], points[0]);
     }
-}
-
-TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
-    World world = make_world();
-    add_ground(world);
-    add(world, {.position = {0, 2, 0}}, Box{});
-    const std::uint64_t before = world.hash();
-    const auto refused = [&](const auto& result, const std::string& field) {
-        ASSERT_FALSE(result) << field;
-        EXPECT_EQ(result.status(), Status::BadArgument) << field;
-        EXPECT_NE(result.error().text().find(field), std::string::npos) << result.error().text();
-        EXPECT_EQ(world.hash(), before);
-    };
-    std::vector<RayHit> hits;
-    std::vector<std::optional<RayHit>> answers;
-    std::vector<Found> found;
-    std::vector<NearHit> near;
-    const std::vector<std::pair<Ray, std::string>> bad_rays{
-        {{{nan, 0, 0}}, "ray.origin"},          {{{0, 2e7, 0}}, "ray.origin"},
-        {{{0, double(inf), 0}}, "ray.origin"},  {{{}, {0, 0, 0}}, "ray.direction"},
-        {{{}, {0, nan, 1}}, "ray.direction"},   {{{}, {0, 2, 0}}, "ray.direction"},
-        {{{}, {0, 1.01f, 0}}, "ray.direction"}, {{{}, {0, 1, 0}, -1}, "ray.length"},
-        {{{}, {0, 1, 0}, nan}, "ray.length"},
-    };
-    for (const auto& [ray, field] : bad_rays) {
-        refused(cast_ray(world, ray), field);
-        refused(any_hit(world, ray), field);
-        refused(cast_ray_all(world, ray, {}, hits), field);
-        const std::vector<Ray> rays{{{}, {0, 1, 0}}, ray};
-        refused(cast_rays(world, rays, {}, answers), "rays[1]." + field.substr(4));
-    }
-    const Pose here{{0, 1, 0}, {}};
-    refused(cast_shape(world, Sphere{0}, here, {0, 1, 0}, 1), "radius");
-    refused(cast_shape(world, ConvexHull{}, here, {0, 1, 0}, 1), "hull");
-    refused(cast_shape(world, Sphere{}, {{nan, 0, 0}, {}}, {0, 1, 0}, 1), "pose.position");
-    refused(cast_shape(world, Sphere{}, {{}, {0, 0, 0, 0}}, {0, 1, 0}, 1), "pose.rotation");
-    refused(cast_shape(world, Sphere{}, here, {0, 1.1f, 0}, 1), "direction");
-    refused(cast_shape(world, Sphere{}, here, {0, 1, 0}, -1), "length");
-    refused(overlapping(world, Box{{1, nan, 1}}, here, {}, found), "half");
-    refused(overlapping(world, Sphere{}, {{0, 0, nan}, {}}, {}, found), "pose.position");
-    refused(overlapping(world, Aabb{}, {}, found), "box");
-    refused(overlapping(world, Aabb{{0, 0, nan}, {1, 1, 1}}, {}, found), "box");
-    refused(colliders_at(world, {0, nan, 0}, {}, found), "point");
-    refused(nearest(world, {0, nan, 0}, 1, 1, {}, near), "point");
-    refused(nearest(world, {}, 0, 1, {}, near), "k");
-    refused(nearest(world, {}, 1, -1, {}, near), "radius");
-    refused(nearest(world, {}, 1, nan, {}, near), "radius");
-    refused(seen_by(world, Frustum{}, {}, found), "frustum");
-    Frustum frustum = box_frustum({}, {}, {1, 1, 1});
-    frustum.sides[3].offset = nan;
-    refused(seen_by(world, frustum, {}, found), "sides[3]");
-    frustum = box_frustum({}, {}, {1, 1, 1});
-    frustum.sides[2].normal *= 2;
-    refused(seen_by(world, frustum, {}, found), "sides[2].normal");
-    frustum = box_frustum({}, {}, {1, 1, 1});
-    for (Frustum::Side& side : frustum.sides) side = {-side.normal, -side.offset};
-    refused(seen_by(world, frustum, {}, found), "frustum");
-    EXPECT_TRUE(hits.empty() && answers.empty() && found.empty() && near.empty());
-}
-
-TEST(Query, from_inside_a_step_is_refused) {
-    struct Nosy final : TaskRunner {
-        const World* world = nullptr;
-        Status seen = Status::Ok;
-        void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
-            if (world != nullptr) seen = cast_ray(*world, {{0, 9, 0}, {0, -1, 0}}).status();
-            for (std::size_t i = 0; i < count; ++i) chunk(i);
-        }
-        [[nodiscard]] int threads() const override { return 2; }
-    } nosy;
-    World world = make_world({}, {.tasks = &nosy});
-    add_pile(world, 200);
-    nosy.world = &world;
-    run(world, 0.1);
-    EXPECT_EQ(nosy.seen, Status::Busy);
-}
-
-TEST(Query, of_an_empty_world_finds_nothing) {
-    const World world = make_world();
-    EXPECT_FALSE(opened(cast_ray(world, {{0, 9, 0}, {0, -1, 0}})));
-    EXPECT_FALSE(opened(any_hit(world, {{0, 9, 0}, {0, -1, 0}})));
-    EXPECT_FALSE(opened(cast_shape(world, Sphere{}, {}, {0, 1, 0}, inf)));
-    std::vector<Found> found;
-    std::vector<NearHit> near;
-    opened(overlapping(world, Aabb::everything(), {}, found));
-    opened(nearest(world, {}, 5, inf, {}, near));
-    EXPECT_TRUE(found.empty() && near.empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fase/core/random.hpp"
+#include "fase/world/query.hpp"
 #include "fase/world/world.hpp"
 
 namespace fase::test {
@@ -13,6 +14,12 @@ inline World make_world(const Settings& settings = {}, const Setup& setup = {}) 
     EXPECT_TRUE(world) << (world ? "" : world.error().text());
     return std::move(*world);
 }
+/// What a call gives, or the test fails.
+template <class T> T opened(Result<T> result) {
+    EXPECT_TRUE(result) << (result ? "" : result.error().text());
+    return result ? *result : T{};
+}
+inline void opened(const Result<void>& result) { EXPECT_TRUE(result) << (result ? "" : result.error().text()); }
 /// A body, or the test fails.
 inline BodyId add(World& world, const BodyDef& def, const Shape& shape, const ColliderDef& collider = {}) {
     const auto body = world.add_body(def, shape, collider);
@@ -41,6 +48,17 @@ inline Quat random_rotation(Random& random) {
         q = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
     } while (length_squared(q) < 0.1f || length_squared(q) > 1);
     return normalized(q);
+}
+/// The frustum whose six planes are the sides of a turned box.
+inline Frustum box_frustum(Vec3d centre, Quat turned, Vec3d half) {
+    Frustum frustum;
+    for (int i = 0; i < 6; ++i) {
+        Vec3d axis;
+        axis[i / 2] = i % 2 == 0 ? -1 : 1;
+        const Vec3d normal = rotate(normalized(to_double(turned)), axis);
+        frustum.sides[static_cast<std::size_t>(i)] = {normal, dot(normal, centre) + half[i / 2]};
+    }
+    return frustum;
 }
 /// A pile of `count` boxes, spheres, capsules and cylinders that fall onto ground: all kinds of contacts.
 inline void add_pile(World& world, int count, std::uint64_t seed = 1) {
