@@ -74,7 +74,7 @@ constexpr std::size_t batch_size = 256;
 /// that cannot be foretold.
 struct Batch {
     std::size_t begin, end;
-    std::array<std::array<std::uint32_t, batch_size + width>, 4> records;  // own row; + z; + y; + both
+    std::array<std::array<std::uint32_t, batch_size + width>, 4> records;  // + z; + y; + both
     std::array<std::size_t, 4> counts{};
     /// By record: the first cell that matters in its own row, the one behind the last; and where the row before is
     /// tested too, the first there, or none if there is no such row.
@@ -125,7 +125,6 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
             hn::StoreU(front(record, bits), dw, batch.records[kind].data() + batch.counts[kind]);
             batch.counts[kind] += static_cast<std::size_t>(std::popcount(bits));
         };
-        put(0, hn::AndNot(hn::Or(reaches_y, reaches_z), valid));
         put(1, hn::And(valid, hn::AndNot(reaches_y, reaches_z)));
         put(2, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
         put(3, hn::And(valid, hn::And(reaches_y, reaches_z)));
@@ -134,12 +133,11 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
 
 /// The ranges that a box of a kind is tested against, in the order in which they lie.
 template <bool reaches_y, bool reaches_z> struct Ranges {
-    Range own, z1{}, y1z0{}, y1{}, y1z1{};
+    Range z1{}, y1z0{}, y1{}, y1z1{};
 
     HWY_INLINE Ranges(const Neighbours& rows, const Batch& batch, std::uint32_t i) {
         const std::size_t at = i - batch.begin;
         const std::uint32_t *const from = rows.table + batch.from[at], *const to = rows.table + batch.to[at];
-        own = {i + 1, *to};
         if constexpr (reaches_z) z1 = {from[rows.z1], to[rows.z1]};
         if constexpr (reaches_y) {
             if (rows.has_z0) y1z0 = {rows.table[batch.from_z0[at] + rows.y1z0], to[rows.y1z0]};
@@ -148,9 +146,36 @@ template <bool reaches_y, bool reaches_z> struct Ranges {
         if constexpr (reaches_y && reaches_z) y1z1 = {from[rows.y1z1], to[rows.y1z1]};
     }
     [[nodiscard]] HWY_INLINE bool has_long() const {
-        return (own.size() | z1.size() | y1z0.size() | y1.size() | y1z1.size()) >= long_range;
+        return (z1.size() | y1z0.size() | y1.size() | y1z1.size()) >= long_range;
     }
 };
+
+/// Each record of the batch against those behind it in its row: a vector of records against the one that lies a place
+/// further on, two places further on, and so forth.
+inline void test_own_row(const Neighbours& rows, const Columns& columns, const Batch& batch, PairBlock& block) {
+    const WordTag d;
+    const hn::RebindToSigned<WordTag> di;
+    const Columns c = columns;
+    Writer out(block);
+    for (std::size_t i = batch.begin; i < batch.end; i += width) {
+        const auto to = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(batch.to.data() + (i - batch.begin)));
+        const auto end = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(rows.table), to);
+        const auto next = hn::BitCast(di, hn::Iota(d, static_cast<std::uint32_t>(i)));
+        const auto behind = hn::IfThenElseZero(hn::FirstN(di, std::min<std::size_t>(width, batch.end - i)), hn::Sub(end, next));
+        const std::int32_t most = hn::GetLane(hn::MaxOfLanes(di, behind));
+        constexpr std::int32_t steps = 32;
+        for (std::int32_t k = 1; k < most;) {
+            out.make_room<steps>();
+            const Asker askers = Asker::several(c, i);
+            for (const std::int32_t stop = std::min(most, k + steps); k < stop; ++k) {
+                const std::size_t j = i + static_cast<std::size_t>(k);
+                const std::uint32_t bits = askers.overlapped<Side::Unknown, Side::Unknown>(c, j) &
+                                           bits_of(hn::RebindMask(FloatTag(), hn::Gt(behind, hn::Set(di, k))));
+                out.add(askers.proxy, hn::LoadU(d, c.proxies + j), bits);
+            }
+        }
+    }
+}
 
 /// The boxes of a kind that have a long range: the first `count` in its list. Not inlined: what is passed by reference
 /// would not stay in registers.
@@ -163,7 +188,6 @@ HWY_NOINLINE void test_long(const Neighbours& rows, const Columns& columns, cons
         const std::uint32_t i = batch.records[(reaches_y ? 2 : 0) + (reaches_z ? 1 : 0)][k];
         const Ranges<reaches_y, reaches_z> ranges(rows, batch, i);
         const auto asker = [&] { return Asker(c, i); };
-        test_range<Side::Unknown, Side::Unknown>(asker, c, ranges.own.begin, ranges.own.end, out);
         if constexpr (reaches_z) test_range<Side::Unknown, Side::Later>(asker, c, ranges.z1.begin, ranges.z1.end, out);
         if constexpr (reaches_y) {
             test_range<Side::Later, Side::Earlier>(asker, c, ranges.y1z0.begin, ranges.y1z0.end, out);
@@ -188,9 +212,8 @@ HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batc
             records[with_long++] = i;
             continue;
         }
-        out.make_room<5 * short_vectors>();
+        out.make_room<4 * short_vectors>();
         const Asker asker(c, i);
-        test_short_range<Side::Unknown, Side::Unknown>(asker, c, ranges.own, out);
         if constexpr (reaches_z) test_short_range<Side::Unknown, Side::Later>(asker, c, ranges.z1, out);
         if constexpr (reaches_y) {
             if (has_z0) test_short_range<Side::Later, Side::Earlier>(asker, c, ranges.y1z0, out);
@@ -236,7 +259,7 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
             for (; fetched < wanted; fetched += 16)
                 for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + fetched);
         }
-        test_kind<false, false>(rows, c, batch, block);
+        test_own_row(rows, c, batch, block);
         test_kind<false, true>(rows, c, batch, block);
         test_kind<true, false>(rows, c, batch, block);
         test_kind<true, true>(rows, c, batch, block);

@@ -74,10 +74,24 @@ struct Columns {
     [[nodiscard]] HWY_INLINE const float* hi_z() const { return lo_x + stride5; }
 };
 
-/// The box that asks, in all lanes.
+/// The box that asks, in all lanes; or several that ask, a lane each.
 struct Asker {
     Floats lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
     Words proxy;
+
+    static HWY_INLINE Asker several(const Columns& c, std::size_t i) {
+        const FloatTag d;
+        const float* const at = c.lo_x + i;
+        Asker some;
+        some.lo_x = hn::LoadU(d, at);
+        some.lo_y = hn::LoadU(d, at + c.stride);
+        some.lo_z = hn::LoadU(d, at + 2 * c.stride);
+        some.hi_x = hn::LoadU(d, at + c.stride3);
+        some.hi_y = hn::LoadU(d, at + 4 * c.stride);
+        some.hi_z = hn::LoadU(d, at + c.stride5);
+        some.proxy = hn::LoadU(WordTag(), c.proxies + i);
+        return some;
+    }
 
     HWY_INLINE Asker(const Columns& c, std::size_t i) {
         const FloatTag d;
@@ -107,6 +121,8 @@ struct Asker {
     }
 
 private:
+    Asker() = default;
+
     /// What is in memory stands to the right of each comparison, where x86 can read it in the same instruction. Two
     /// chains: a comparison under a mask has to wait for the mask.
     template <Side y, Side z> HWY_INLINE Lanes lanes_overlapped(const Columns& c, std::size_t j) const {
@@ -138,6 +154,12 @@ public:
         static_assert(wanted <= PairBlock::most);
         if (HWY_UNLIKELY(at_ + wanted > limit_)) at_ = block_.flush(at_);
     }
+    /// The marked lanes of two vectors of proxies.
+    HWY_INLINE void add(Words p, Words q, std::uint32_t bits) {
+        const auto pairs = static_cast<std::size_t>(std::popcount(bits));
+        store(front(p, bits), front(q, bits), pairs, reinterpret_cast<std::uint32_t*>(at_));
+        at_ += pairs;
+    }
     /// The marked ones of some records.
     HWY_INLINE void add(Words asker, const Proxy* others, std::uint32_t bits) {
         const Words found = front(hn::LoadU(WordTag(), others), bits);
@@ -162,8 +184,9 @@ private:
         const WordTag d;
         if constexpr (width == 16) {
             const hn::Half<WordTag> half;
-            hn::StoreU(ordered(hn::LowerHalf(half, p), q), d, to);
-            if (HWY_UNLIKELY(pairs > width / 2)) hn::StoreU(ordered(hn::UpperHalf(half, p), q), d, to + width);
+            hn::StoreU(ordered(hn::LowerHalf(half, p), hn::LowerHalf(half, q)), d, to);
+            if (HWY_UNLIKELY(pairs > width / 2))
+                hn::StoreU(ordered(hn::UpperHalf(half, p), hn::UpperHalf(half, q)), d, to + width);
             return;
         }
         const Words a = hn::Min(p, q), b = hn::Max(p, q);
@@ -177,9 +200,9 @@ private:
         }
     }
     /// Of both words in one order and in the other, the larger has the larger one above.
-    template <class V> static HWY_INLINE Words ordered(V p, Words q) {
+    template <class V> static HWY_INLINE Words ordered(V p, V q) {
         const hn::Repartition<std::uint64_t, WordTag> d;
-        const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::BitCast(d, q)));
+        const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q)));
         return hn::BitCast(WordTag(), hn::Max(one, hn::RotateRight<32>(one)));
     }
 #endif
