@@ -79,6 +79,9 @@ struct Batch {
     /// By record: the first cell that matters in its own row, the one behind the last; and where the row before is
     /// tested too, the first there, or none if there is no such row.
     std::array<std::uint32_t, batch_size + width> from, to, from_z0;
+    /// By record: how many behind it in its own row matter, and one more; by vector of records: the most of these.
+    std::array<std::int32_t, batch_size + width> behind;
+    std::array<std::int32_t, batch_size / width> most_behind;
 };
 
 /// Looks up the cells that matter to each record of a batch, and puts it to those of its kind.
@@ -113,6 +116,11 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
         const auto to = hn::Add(row, hn::Add(x.of(hn::LoadU(d, c.hi_x() + i)), one));
         hn::StoreU(hn::BitCast(dw, from), dw, batch.from.data() + at);
         hn::StoreU(hn::BitCast(dw, to), dw, batch.to.data() + at);
+        const auto end_behind = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(set.table + level.table), to);
+        const auto behind = hn::IfThenElseZero(hn::FirstN(di, std::min<std::size_t>(width, batch.end - i)),
+                                               hn::Sub(end_behind, hn::Iota(di, static_cast<std::int32_t>(i))));
+        hn::StoreU(behind, di, batch.behind.data() + at);
+        batch.most_behind[at / width] = hn::GetLane(hn::MaxOfLanes(di, behind));
         const auto first_row = hn::Eq(cell_z, hn::Zero(di));
         hn::StoreU(hn::BitCast(dw, hn::IfThenElse(first_row, to, from)), dw, batch.from_z0.data() + at);
 
@@ -150,23 +158,20 @@ template <bool reaches_y, bool reaches_z> struct Ranges {
     }
 };
 
-/// Each record of the batch against those behind it in its row: a vector of records against the one that lies a place
+/// Each record of the batch against those behind it in its row: a vector of records against the one that begins a place
 /// further on, two places further on, and so forth.
-inline void test_own_row(const Neighbours& rows, const Columns& columns, const Batch& batch, PairBlock& block) {
+inline void test_own_row(const Columns& columns, const Batch& batch, PairBlock& block) {
     const WordTag d;
     const hn::RebindToSigned<WordTag> di;
     const Columns c = columns;
     Writer out(block);
     for (std::size_t i = batch.begin; i < batch.end; i += width) {
-        const auto to = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(batch.to.data() + (i - batch.begin)));
-        const auto end = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(rows.table), to);
-        const auto next = hn::BitCast(di, hn::Iota(d, static_cast<std::uint32_t>(i)));
-        const auto behind = hn::IfThenElseZero(hn::FirstN(di, std::min<std::size_t>(width, batch.end - i)), hn::Sub(end, next));
-        const std::int32_t most = hn::GetLane(hn::MaxOfLanes(di, behind));
+        const std::int32_t most = batch.most_behind[(i - batch.begin) / width];
         constexpr std::int32_t steps = 32;
         for (std::int32_t k = 1; k < most;) {
             out.make_room<steps>();
             const Asker askers = Asker::several(c, i);
+            const auto behind = hn::LoadU(di, batch.behind.data() + (i - batch.begin));
             for (const std::int32_t stop = std::min(most, k + steps); k < stop; ++k) {
                 const std::size_t j = i + static_cast<std::size_t>(k);
                 const std::uint32_t bits = askers.overlapped<Side::Unknown, Side::Unknown>(c, j) &
@@ -259,7 +264,7 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
             for (; fetched < wanted; fetched += 16)
                 for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + fetched);
         }
-        test_own_row(rows, c, batch, block);
+        test_own_row(c, batch, block);
         test_kind<false, true>(rows, c, batch, block);
         test_kind<true, false>(rows, c, batch, block);
         test_kind<true, true>(rows, c, batch, block);
