@@ -88,17 +88,25 @@ double spacing_of(const RowSample& sample, double count, float side) {
     return dimensions == 0 ? 0 : dimensions == 1 ? each : dimensions == 2 ? std::sqrt(each) : std::cbrt(each);
 }
 
-/// Gives the level its cells: of that edge, or of a larger one when there would be more than `most`.
+/// Gives the level its cells: of that edge, `along` of them along a row for one edge. When there would be more than
+/// `most`, fewer along a row, and if that is not enough, of a larger edge.
 void divide(RowLevel& level, const RowSample& sample, const std::array<int, 3>& axis, double edge, double along,
             double most) {
+    const double least_along = std::min(along, 2.5);
+    const auto length = [&](std::size_t k) { return double{sample.ranges[static_cast<std::size_t>(axis[k])].length}; };
     std::array<double, 3> counts{};
-    for (;; edge *= 1.25) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto a = static_cast<std::size_t>(axis[k]);
-            counts[a] = std::floor(double{sample.ranges[a].length} / (k == 0 ? edge / along : edge)) + 1;
-            if (k > 0 && counts[a] <= 2) counts[a] = 1;
+    for (;; edge *= 1.0625) {
+        double rows = 1;
+        for (const std::size_t k : {1u, 2u}) {
+            double& count = counts[static_cast<std::size_t>(axis[k])] = std::floor(length(k) / edge) + 1;
+            if (count <= 2) count = 1;
+            rows *= count;
         }
-        if (counts[0] * counts[1] * counts[2] <= most) break;
+        const double edges = length(0) / edge;
+        if ((std::floor(edges * least_along) + 1) * rows > most) continue;
+        if (edges > 0) along = std::max(least_along, std::min(along, (most / rows - 1) / edges));
+        counts[static_cast<std::size_t>(axis[0])] = std::floor(edges * along) + 1;
+        break;
     }
     for (std::size_t a = 0; a < 3; ++a) {
         level.origin[a] = sample.ranges[a].from;
