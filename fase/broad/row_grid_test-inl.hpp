@@ -19,6 +19,15 @@ HWY_INLINE std::uint32_t bits_of(Lanes lanes) {
     return width > 8 ? bytes[0] | std::uint32_t{bytes[1]} << 8 : bytes[0];
 #endif
 }
+/// The lanes below zero, and those of -0, one bit each, lowest first.
+HWY_INLINE std::uint32_t negative_bits(Floats v) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    return _mm512_movepi32_mask(_mm512_castps_si512(v.raw));
+#else
+    const hn::RebindToSigned<FloatTag> d;
+    return bits_of(hn::RebindMask(FloatTag(), hn::Lt(hn::BitCast(d, v), hn::Zero(d))));
+#endif
+}
 /// The first `count`, of at most 16.
 HWY_INLINE std::uint32_t first_bits(std::size_t count) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
@@ -76,16 +85,16 @@ struct Columns {
 
 /// The box that asks, in all lanes; or several that ask, a lane each.
 struct Asker {
-    Floats lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
+    Floats minus_lo_x, minus_lo_y, minus_lo_z, hi_x, hi_y, hi_z;
     Words proxy;
 
     static HWY_INLINE Asker several(const Columns& c, std::size_t i) {
         const FloatTag d;
         const float* const at = c.lo_x + i;
         Asker some;
-        some.lo_x = hn::LoadU(d, at);
-        some.lo_y = hn::LoadU(d, at + c.stride);
-        some.lo_z = hn::LoadU(d, at + 2 * c.stride);
+        some.minus_lo_x = hn::Neg(hn::LoadU(d, at));
+        some.minus_lo_y = hn::Neg(hn::LoadU(d, at + c.stride));
+        some.minus_lo_z = hn::Neg(hn::LoadU(d, at + 2 * c.stride));
         some.hi_x = hn::LoadU(d, at + c.stride3);
         some.hi_y = hn::LoadU(d, at + 4 * c.stride);
         some.hi_z = hn::LoadU(d, at + c.stride5);
@@ -96,9 +105,9 @@ struct Asker {
     HWY_INLINE Asker(const Columns& c, std::size_t i) {
         const FloatTag d;
         const float* const at = c.lo_x + i;
-        lo_x = hn::Set(d, at[0]);
-        lo_y = hn::Set(d, at[c.stride]);
-        lo_z = hn::Set(d, at[2 * c.stride]);
+        minus_lo_x = hn::Neg(hn::Set(d, at[0]));
+        minus_lo_y = hn::Neg(hn::Set(d, at[c.stride]));
+        minus_lo_z = hn::Neg(hn::Set(d, at[2 * c.stride]));
         hi_x = hn::Set(d, at[c.stride3]);
         hi_y = hn::Set(d, at[4 * c.stride]);
         hi_z = hn::Set(d, at[c.stride5]);
@@ -107,37 +116,38 @@ struct Asker {
     HWY_INLINE Asker(const Move& m, const std::array<int, 3>& axis) {
         const FloatTag d;
         Vec3 lo = m.box.lo, hi = m.box.hi;
-        lo_x = hn::Set(d, lo[axis[0]]);
-        lo_y = hn::Set(d, lo[axis[1]]);
-        lo_z = hn::Set(d, lo[axis[2]]);
+        minus_lo_x = hn::Neg(hn::Set(d, lo[axis[0]]));
+        minus_lo_y = hn::Neg(hn::Set(d, lo[axis[1]]));
+        minus_lo_z = hn::Neg(hn::Set(d, lo[axis[2]]));
         hi_x = hn::Set(d, hi[axis[0]]);
         hi_y = hn::Set(d, hi[axis[1]]);
         hi_z = hn::Set(d, hi[axis[2]]);
         proxy = hn::Set(WordTag(), m.proxy);
     }
-    /// Which of the records from j on the box overlaps, a bit each; none that is not a number across the rows.
+    /// Which of the records from j on the box overlaps, a bit each. Neither may be infinite, but for killed records.
     template <Side y, Side z> HWY_INLINE std::uint32_t overlapped(const Columns& c, std::size_t j) const {
-        return bits_of(lanes_overlapped<y, z>(c, j));
+        return ~negative_bits(gaps<y, z>(c, j)) & first_bits(width);
     }
 
 private:
     Asker() = default;
 
-    /// What is in memory stands to the right of each comparison, where x86 can read it in the same instruction. Two
-    /// chains: a comparison under a mask has to wait for the mask.
-    template <Side y, Side z> HWY_INLINE Lanes lanes_overlapped(const Columns& c, std::size_t j) const {
+    /// Negative in the lanes where the boxes are apart along some axis. Differences instead of comparisons: a processor
+    /// makes more of them at a time. What is in memory stands to the right, where x86 can read it in the same
+    /// instruction.
+    template <Side y, Side z> HWY_INLINE Floats gaps(const Columns& c, std::size_t j) const {
         const FloatTag d;
         const float* const at = c.lo_x + j;
-        auto begins_before = hn::Ge(hi_x, hn::LoadU(d, at));
-        auto ends_before = hn::Gt(lo_x, hn::LoadU(d, at + c.stride3));
-        if constexpr (y != Side::Earlier)
-            begins_before = hn::And(begins_before, hn::Ge(hi_y, hn::LoadU(d, at + c.stride)));
-        if constexpr (y != Side::Later)
-            ends_before = hn::Or(ends_before, hn::Gt(lo_y, hn::LoadU(d, at + 4 * c.stride)));
-        if constexpr (z != Side::Earlier)
-            begins_before = hn::And(begins_before, hn::Ge(hi_z, hn::LoadU(d, at + 2 * c.stride)));
-        if constexpr (z != Side::Later) ends_before = hn::Or(ends_before, hn::Gt(lo_z, hn::LoadU(d, at + c.stride5)));
-        return hn::AndNot(ends_before, begins_before);
+        auto apart = hn::Or(hn::Sub(hi_x, hn::LoadU(d, at)), hn::Add(minus_lo_x, hn::LoadU(d, at + c.stride3)));
+        if constexpr (y == Side::Unknown)
+            apart = hn::Or3(apart, hn::Sub(hi_y, hn::LoadU(d, at + c.stride)), hn::Add(minus_lo_y, hn::LoadU(d, at + 4 * c.stride)));
+        if constexpr (y == Side::Later) apart = hn::Or(apart, hn::Sub(hi_y, hn::LoadU(d, at + c.stride)));
+        if constexpr (z == Side::Unknown)
+            apart = hn::Or3(apart, hn::Sub(hi_z, hn::LoadU(d, at + 2 * c.stride)), hn::Add(minus_lo_z, hn::LoadU(d, at + c.stride5)));
+        if constexpr (z == Side::Later) apart = hn::Or(apart, hn::Sub(hi_z, hn::LoadU(d, at + 2 * c.stride)));
+        if constexpr (z == Side::Earlier) apart = hn::Or(apart, hn::Add(minus_lo_z, hn::LoadU(d, at + c.stride5)));
+        static_assert(y != Side::Earlier);
+        return apart;
     }
 };
 
