@@ -63,9 +63,9 @@ std::optional<RecordSpan> RowSet::put(const Move& m) {
     const RecordSpan moved = shift(hole, place);
     const std::uint32_t record = hole >= place ? place : place - 1;
     for (std::size_t k = 0; k < 3; ++k) {
-        columns_[k * stride_ + record] = lo[fit_.axis[k]];
+        columns_[k * stride_ + record] = lo[fit_.axis[k]] + 0.0f;
         Vec3 hi = m.box.hi;
-        columns_[(k + 3) * stride_ + record] = hi[fit_.axis[k]];
+        columns_[(k + 3) * stride_ + record] = hi[fit_.axis[k]] + 0.0f;
     }
     proxies_[record] = m.proxy;
     --dead_;

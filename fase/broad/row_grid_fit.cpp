@@ -138,8 +138,12 @@ void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit
     const bool sparse = spacing > 2 * most_sides;
     const bool by_list = settings.rows == RowGridSettings::Rows::List ||
                          (settings.rows == RowGridSettings::Rows::Chosen && sparse && sample.spread_share < 0.3f);
+    // Next to boxes on one plane there is but one row that they reach into: fewer of them shall.
+    const auto wide = std::count_if(sample.ranges.begin(), sample.ranges.end(),
+                                    [&](const Range& range) { return range.length > 4 * most_sides; });
+    const double share = settings.side_share * (wide < 3 ? 1.25 : 1);
     double cell =
-        std::max(std::min(settings.side_share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
+        std::max(std::min(share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
     if (settings.cell > 0) cell = settings.cell;
     if (!(cell > 1e-30)) cell = 1;
 

@@ -208,11 +208,12 @@ void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
     rows_.push_back({INT32_MAX, INT32_MAX, level.first + level.count});
 }
 
-/// Not a number across the rows: no comparison holds. Along the row it stays where it is, for rows in order.
+/// Not a number across the rows, of those below zero: as every difference to it is, and so it is apart from all boxes.
+/// Along the row it stays where it is, for rows in order.
 void RowSet::kill(std::size_t record) {
     FASE_ASSERT(record < count_ && proxies_[record] != killed);
-    for (const std::size_t column : {1u, 2u, 4u, 5u})
-        columns_[column * stride_ + record] = std::numeric_limits<float>::quiet_NaN();
+    const float apart = std::copysign(std::numeric_limits<float>::quiet_NaN(), -1.0f);
+    for (const std::size_t column : {1u, 2u, 4u, 5u}) columns_[column * stride_ + record] = apart;
     proxies_[record] = killed;
     ++dead_;
 }

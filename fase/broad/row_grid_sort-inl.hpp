@@ -44,8 +44,8 @@ inline std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::
         order[i] = m.proxy;
         for (int a = 0; a < 3; ++a) {
             Vec3 lo = m.box.lo, hi = m.box.hi;
-            columns[static_cast<std::size_t>(a)][i] = lo[a];
-            columns[static_cast<std::size_t>(a) + 3][i] = hi[a];
+            columns[static_cast<std::size_t>(a)][i] = lo[a] + 0.0f;
+            columns[static_cast<std::size_t>(a) + 3][i] = hi[a] + 0.0f;
         }
         longest = max(longest, extent(m.box));
     }
@@ -183,13 +183,14 @@ std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t 
             reach[a] = hn::Max(reach[a], hn::Sub(turned.row[4 + a].v, turned.row[1 + a].v));
         if (i + lanes <= end) {
             turned.row[0].store(reinterpret_cast<float*>(order + i));
-            for (std::size_t k = 0; k < 6; ++k) turned.row[1 + k].store(columns[k] + i);
+            for (std::size_t k = 0; k < 6; ++k)  // one zero, not two
+                (turned.row[1 + k] + Wide::set(0)).store(columns[k] + i);
         } else {
             for (std::size_t k = 0; i + k < end; ++k) {
                 const Move& m = boxes[mine[k]];
                 order[i + k] = m.proxy;
                 const float bounds[6] = {m.box.lo.x, m.box.lo.y, m.box.lo.z, m.box.hi.x, m.box.hi.y, m.box.hi.z};
-                for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c];
+                for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c] + 0.0f;
             }
         }
     }

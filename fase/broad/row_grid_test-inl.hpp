@@ -119,12 +119,12 @@ struct Asker {
         minus_lo_x = hn::Neg(hn::Set(d, lo[axis[0]]));
         minus_lo_y = hn::Neg(hn::Set(d, lo[axis[1]]));
         minus_lo_z = hn::Neg(hn::Set(d, lo[axis[2]]));
-        hi_x = hn::Set(d, hi[axis[0]]);
-        hi_y = hn::Set(d, hi[axis[1]]);
-        hi_z = hn::Set(d, hi[axis[2]]);
+        hi_x = hn::Set(d, hi[axis[0]] + 0.0f);  // 0 where it is -0
+        hi_y = hn::Set(d, hi[axis[1]] + 0.0f);
+        hi_z = hn::Set(d, hi[axis[2]] + 0.0f);
         proxy = hn::Set(WordTag(), m.proxy);
     }
-    /// Which of the records from j on the box overlaps, a bit each. Neither may be infinite, but for killed records.
+    /// Which of the records from j on the box overlaps, a bit each; none that have been killed.
     template <Side y, Side z> HWY_INLINE std::uint32_t overlapped(const Columns& c, std::size_t j) const {
         return ~negative_bits(gaps<y, z>(c, j)) & first_bits(width);
     }
@@ -132,9 +132,9 @@ struct Asker {
 private:
     Asker() = default;
 
-    /// Negative in the lanes where the boxes are apart along some axis. Differences instead of comparisons: a processor
-    /// makes more of them at a time. What is in memory stands to the right, where x86 can read it in the same
-    /// instruction.
+    /// Negative in the lanes where the boxes are apart along some axis: a difference is that of the true values, or 0 if
+    /// they are equal, and NaN keeps its sign. Differences instead of comparisons: a processor makes more of them at a
+    /// time. What is in memory stands to the right, where x86 can read it in the same instruction.
     template <Side y, Side z> HWY_INLINE Floats gaps(const Columns& c, std::size_t j) const {
         const FloatTag d;
         const float* const at = c.lo_x + j;
@@ -170,11 +170,25 @@ public:
         store(front(p, bits), front(q, bits), pairs, reinterpret_cast<std::uint32_t*>(at_));
         at_ += pairs;
     }
-    /// The marked ones of some records.
+    /// The marked ones of some records, all with one proxy.
     HWY_INLINE void add(Words asker, const Proxy* others, std::uint32_t bits) {
         const Words found = front(hn::LoadU(WordTag(), others), bits);
         const auto pairs = static_cast<std::size_t>(std::popcount(bits));
-        store(found, asker, pairs, reinterpret_cast<std::uint32_t*>(at_));
+        auto* const to = reinterpret_cast<std::uint32_t*>(at_);
+#if HWY_TARGET != HWY_SCALAR
+        if constexpr (width == 16) {
+            const WordTag d;
+            const hn::Half<WordTag> half;
+            const hn::Repartition<std::uint64_t, WordTag> wide;
+            const auto above = hn::ShiftLeft<32>(hn::BitCast(wide, asker));  // the same in every asking
+            hn::StoreU(larger_above(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, found)), above)), d, to);
+            if (HWY_UNLIKELY(pairs > width / 2))
+                hn::StoreU(larger_above(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, found)), above)), d, to + width);
+            at_ += pairs;
+            return;
+        }
+#endif
+        store(found, asker, pairs, to);
         at_ += pairs;
     }
 
@@ -212,7 +226,9 @@ private:
     /// Of both words in one order and in the other, the larger has the larger one above.
     template <class V> static HWY_INLINE Words ordered(V p, V q) {
         const hn::Repartition<std::uint64_t, WordTag> d;
-        const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q)));
+        return larger_above(hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q))));
+    }
+    template <class V> static HWY_INLINE Words larger_above(V one) {
         return hn::BitCast(WordTag(), hn::Max(one, hn::RotateRight<32>(one)));
     }
 #endif
