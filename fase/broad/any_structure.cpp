@@ -40,10 +40,14 @@ void AnyStructure::insert(std::span<const Move> boxes) {
         structure_);
 }
 
-void AnyStructure::move(std::span<const Move> boxes) {
+void AnyStructure::move(TaskRunner* tasks, std::span<const Move> boxes) {
     std::visit(
-        [&](auto& s) {
-            for (const Move& m : boxes) s.move(m.proxy, m.box);
+        [&]<class S>(S& s) {
+            if constexpr (MovesMany<S>) {
+                s.move(tasks, boxes);
+            } else {
+                for (const Move& m : boxes) s.move(m.proxy, m.box);
+            }
         },
         structure_);
 }
@@ -56,10 +60,14 @@ void AnyStructure::insert(std::span<const Proxy> proxies, std::span<const Aabb> 
         structure_);
 }
 
-void AnyStructure::move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+void AnyStructure::move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
     std::visit(
-        [&](auto& s) {
-            for (const Proxy p : proxies) s.move(p, by_proxy[p]);
+        [&]<class S>(S& s) {
+            if constexpr (MovesMany<S>) {
+                s.move(tasks, proxies, by_proxy);
+            } else {
+                for (const Proxy p : proxies) s.move(p, by_proxy[p]);
+            }
         },
         structure_);
 }

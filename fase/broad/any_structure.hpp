@@ -29,10 +29,16 @@ public:
     AnyStructure();
 
     void insert(std::span<const Move> boxes);
-    void move(std::span<const Move> boxes);
+    /// No proxy twice.
+    void move(std::span<const Move> boxes) { move(nullptr, boxes); }
+    /// The same, shared among threads by structures that can.
+    void move(TaskRunner& tasks, std::span<const Move> boxes) { move(&tasks, boxes); }
     /// The same for boxes that stand in a list by proxy.
     void insert(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
-    void move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
+    void move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) { move(nullptr, proxies, by_proxy); }
+    void move(TaskRunner& tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+        move(&tasks, proxies, by_proxy);
+    }
     void erase(std::span<const Proxy> proxies);
     void set_awake(std::span<const Proxy> proxies, bool awake);
     void clear();
@@ -102,6 +108,9 @@ private:
     template <class> struct VariantOf;
     template <class... S> struct VariantOf<StructureList<S...>> { using type = std::variant<S...>; };
     VariantOf<AllStructures>::type structure_;
+
+    void move(TaskRunner* tasks, std::span<const Move> boxes);
+    void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
 
     /// A region of a type that is not known here.
     class AnyRegion {

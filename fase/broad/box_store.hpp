@@ -52,6 +52,26 @@ public:
         changed_ = true;
         row(place.odd != 0)[place.at].box = box;
     }
+    /// The same for many, each at most once: box_of(k) is the one of proxy_of(k), for `begin` <= k < `end`. Passes over
+    /// those that are not stored here and returns how many they are. Several threads may share out the boxes;
+    /// note_moved() has to come after them.
+    template <class ProxyOf, class BoxOf>
+    std::size_t move_unseen(std::size_t begin, std::size_t end, const ProxyOf& proxy_of, const BoxOf& box_of) {
+        const Place* const places = places_.data();
+        const std::size_t known = places_.size();
+        Move* const rows[2] = {ordinary_.data(), odd_.data()};
+        std::size_t unknown = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Proxy p = proxy_of(k);
+            if (p >= known || places[p].at == nowhere) {
+                ++unknown;
+            } else {
+                rows[places[p].odd][places[p].at].box = box_of(k);
+            }
+        }
+        return unknown;
+    }
+    void note_moved() { changed_ = true; }
     /// Puts boxes where they belong that stand among the odd ones since move_unseen(). O(odd ones).
     void see_odd() {
         for (std::size_t i = odd_.size(); i-- > 0;)

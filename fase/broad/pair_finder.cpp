@@ -101,9 +101,9 @@ void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     take_changed(tasks, boxes, boxes_, changed_);
     if (awake_.size() == boxes.size() &&
         std::none_of(changed_.begin(), changed_.end(), [&](Proxy p) { return is_absent(boxes[p]); })) {
-        awake_.move(changed_, boxes_);
+        awake_.move(tasks, changed_, boxes_);
     } else {
-        sort_out_changed();
+        sort_out_changed(tasks);
     }
     constexpr std::uint32_t looks_again = 32;
     if (automatic_) suit_all(++updates_ % looks_again == 0);
@@ -112,7 +112,7 @@ void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
 }
 
 /// Each changed box moves, comes, goes or wakes.
-void PairFinder::sort_out_changed() {
+void PairFinder::sort_out_changed(TaskRunner& tasks) {
     for (std::vector<Proxy>* list : {&moved_, &came_, &gone_, &leaving_, &static_moved_, &static_came_, &static_gone_})
         list->clear();
     for (const Proxy p : changed_) {
@@ -137,12 +137,12 @@ void PairFinder::sort_out_changed() {
                 population == Population::Absent && known_static_[p] != 0 ? Population::Static : Population::Awake;
         }
     }
-    awake_.move(moved_, boxes_);
+    awake_.move(tasks, moved_, boxes_);
     awake_.erase(gone_);
     awake_.insert(came_, boxes_);
     asleep_.erase(leaving_);
     drop_pairs_of(leaving_);
-    static_.move(static_moved_, boxes_);
+    static_.move(tasks, static_moved_, boxes_);
     static_.erase(static_gone_);
     static_.insert(static_came_, boxes_);
 }

@@ -74,7 +74,7 @@ private:
                                                   : self.awake_;
     }
     void suit_all(bool looks_closely);
-    void sort_out_changed();
+    void sort_out_changed(TaskRunner& tasks);
     void keep_static_pairs();
     void drop_pairs_of(std::span<const Proxy> proxies);
 };

@@ -33,6 +33,18 @@ public:
     void move(Proxy p, const Aabb& box) {
         if (!moving_.moves_at_once(p, box)) part_of(p).move(p, box);
     }
+    /// Many at once, none of them twice: each gets the box that stands in the list by its proxy. With tasks, several
+    /// threads share them out.
+    void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+        move_all(
+            tasks, proxies.size(), [=](std::size_t k) { return proxies[k]; },
+            [=](std::size_t k) -> const Aabb& { return by_proxy[proxies[k]]; });
+    }
+    void move(TaskRunner* tasks, std::span<const Move> moves) {
+        move_all(
+            tasks, moves.size(), [=](std::size_t k) { return moves[k].proxy; },
+            [=](std::size_t k) -> const Aabb& { return moves[k].box; });
+    }
     void erase(Proxy p) { part_of(p).erase(p); }
     void set_awake(Proxy p, bool awake);
     [[nodiscard]] bool is_awake(Proxy p) const { return moving_.holds(p); }
@@ -78,6 +90,8 @@ private:
     RowPart moving_, resting_;
 
     [[nodiscard]] RowPart& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
+    template <class ProxyOf, class BoxOf>
+    void move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void commit(TaskRunner* tasks);
     void find(bool resting_too, std::vector<Pair>& out) const;
     void find_odd(bool resting_too, std::vector<Pair>& out) const;
@@ -86,6 +100,19 @@ private:
             for (std::size_t k = 0; k < part->sets(); ++k) f(part->set(k));
     }
 };
+
+template <class ProxyOf, class BoxOf>
+void RowGrid::move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of) {
+    std::size_t left = moving_.move_at_once(tasks, count, proxy_of, box_of);
+    if (left == 0) return;
+    const bool all = left == count;
+    for (std::size_t k = 0; k < count && left > 0; ++k) {
+        const Proxy p = proxy_of(k);
+        if (!all && moving_.holds(p)) continue;
+        part_of(p).move(p, box_of(k));
+        --left;
+    }
+}
 
 template <class Visit> void RowGrid::for_each_leaf(Visit&& visit) const {
     std::vector<Proxy> proxies;

@@ -1,6 +1,7 @@
 #pragma once
 /// One population of a row grid: boxes that are sorted anew whenever one of them moves, and boxes that stand in blocks.
 #include <algorithm>
+#include <atomic>
 #include <span>
 #include <string>
 
@@ -25,6 +26,24 @@ public:
         if (!only_sorts_ || !loose_.holds(p)) return false;
         loose_.move_unseen(p, box);
         return true;
+    }
+    /// The same for many, box_of(k) of proxy_of(k); returns how many have to be moved by move().
+    template <class ProxyOf, class BoxOf>
+    std::size_t move_at_once(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of) {
+        if (!only_sorts_) return count;
+        constexpr std::size_t grain = 16384;
+        std::size_t left = 0;
+        if (tasks == nullptr || tasks->threads() == 1 || count < 2 * grain) {
+            left = loose_.move_unseen(0, count, proxy_of, box_of);
+        } else {
+            std::atomic<std::size_t> sum = 0;
+            parallel_ranges(*tasks, count, grain, [&](std::size_t begin, std::size_t end) {
+                sum += loose_.move_unseen(begin, end, proxy_of, box_of);
+            });
+            left = sum;
+        }
+        if (left != count) loose_.note_moved();
+        return left;
     }
     void erase(Proxy p) {
         if (watches_) note(p);

@@ -11,6 +11,7 @@
 
 #include "fase/broad/measure.hpp"
 #include "fase/broad/region.hpp"
+#include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
@@ -93,6 +94,15 @@ concept HoldsAwake = Structure<S> && requires(const S& c, std::vector<Pair>& out
 template <class S>
 concept BuildsAtOnce = Structure<S> && requires(S s, std::span<const Move> boxes) {
     s.build(boxes);
+};
+
+/// A structure that moves many boxes, each at most once, faster than one after the other; with tasks, by several
+/// threads. What is stored is no different.
+template <class S>
+concept MovesMany = Structure<S> && requires(S s, TaskRunner* tasks, std::span<const Move> moves,
+                                             std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+    s.move(tasks, moves);
+    s.move(tasks, proxies, by_proxy);
 };
 
 /// A structure that likes to know that boxes will seldom move: build() otherwise.

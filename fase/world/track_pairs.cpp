@@ -210,7 +210,7 @@ void track_pairs(WorldState& state) {
     };
     state.askers.clear();
     for (const std::uint32_t c : state.moved) state.askers.push_back({c, state.boxes[c]});
-    state.awake_boxes.move(state.askers);
+    state.awake_boxes.move(*state.tasks, state.askers);
     commit();
     const bool edits = state.removed_any || !state.edited_colliders.empty();
     if (edits) wake_around_edits(state);
