@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "fase/broad/frame_pairs.hpp"
 #include "fase/broad/kept_pairs.hpp"
 #include "fase/broad/suited_structure.hpp"
 
@@ -64,6 +65,8 @@ private:
     KeptPairs resting_;
     bool automatic_ = false;
     std::uint32_t updates_ = 0;
+    FramePairs frame_;            // of the last update, when all was awake and stood in a row grid:
+    bool sorts_frame_ = false;    // then the structures and boxes_ know nothing of it
     std::vector<Proxy> changed_;  // of one update
     // The same, sorted out; those that wake both leave and come.
     std::vector<Proxy> moved_, came_, gone_, leaving_, static_moved_, static_came_, static_gone_;
@@ -74,6 +77,7 @@ private:
                                                   : self.awake_;
     }
     void suit_all(bool looks_closely);
+    [[nodiscard]] bool sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes);
     void sort_out_changed(TaskRunner& tasks);
     void keep_static_pairs();
     void drop_pairs_of(std::span<const Proxy> proxies);

@@ -233,7 +233,7 @@ void RowBlocks::remake(std::uint32_t b, std::span<const Move> more, const RowGri
     }
     block.main.build(boxes, boxes.size() > block_most ? settings : with_sample(settings, 256));
     if (has_lived) block.main.make_holes();
-    if (block.late.size() > 0) block.late.build({}, settings);
+    if (block.late.size() > 0) block.late.build(std::span<const Move>(), settings);
     block.late_work = 0;
     block.holes = static_cast<std::uint32_t>(block.main.dead());
     block.waits = false;

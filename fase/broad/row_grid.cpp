@@ -4,17 +4,16 @@
 #include <algorithm>
 
 #include "fase/broad/pair_sink.hpp"
-#include "fase/broad/row_grid_kernels.hpp"
+#include "fase/broad/row_grid_chunks.hpp"
 
 namespace fase::broad {
 namespace {
 
 using row_grid::PairBlock;
 
-/// The search for pairs in parts that tasks take one at a time. Cuts go by count, so that the order of the pairs does
-/// not depend on the threads.
+/// What is searched: each set of records within itself, and the fewer against the others.
 struct Chunks {
-    static constexpr std::size_t grain = 4096;  // records
+    static constexpr std::size_t grain = row_grid::chunk_records;
     const RowPart &moving, &resting;
     bool moving_ask;  // the fewer ask the others
     std::size_t first_resting, first_asking, count;
@@ -42,7 +41,7 @@ struct Chunks {
 private:
     [[nodiscard]] const RowPart& few() const { return moving_ask ? moving : resting; }
     [[nodiscard]] const RowPart& many() const { return moving_ask ? resting : moving; }
-    static std::size_t parts(const RowSet& set) { return (set.size() + grain - 1) / grain; }
+    static std::size_t parts(const RowSet& set) { return row_grid::chunks_of(set.size()); }
     static std::size_t parts(const RowPart& part) {
         std::size_t sum = 0;
         for (std::size_t k = 0; k < part.sets(); ++k) sum += parts(part.set(k));
@@ -107,12 +106,11 @@ void RowGrid::build_still(std::span<const Move> boxes) {
     moving_.build_still(boxes, settings_);
 }
 
-/// One chunk after the other, as tasks take them.
-void RowGrid::find(bool resting_too, std::vector<Pair>& out) const {
+void RowGrid::find(TaskRunner* tasks, bool resting_too, std::vector<Pair>& out) const {
     find_odd(resting_too, out);
-    PairBlock block(out);
     const Chunks chunks(moving_, resting_, resting_too);
-    for (std::size_t k = 0; k < chunks.count; ++k) chunks.find(k, block);
+    row_grid::find_in_chunks(tasks, chunks.count, out,
+                             [&](std::size_t chunk, PairBlock& block) { chunks.find(chunk, block); });
 }
 
 void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
@@ -129,28 +127,6 @@ void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
     ask_odd(moving_, resting_, out);
     ask_odd(resting_, moving_, out);
     find_odd_between(moving_, resting_, out);
-}
-
-void RowGrid::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    const Chunks chunks(moving_, resting_, true);
-    if (tasks.threads() == 1 || chunks.count < 2) return find(true, out);
-
-    std::vector<std::vector<Pair>> found(chunks.count);
-    parallel_ranges(tasks, chunks.count, 1, [&](std::size_t k, std::size_t) {
-        PairBlock block(found[k]);
-        chunks.find(k, block);
-    });
-    find_odd(true, out);
-    std::vector<std::size_t> places;
-    std::size_t total = out.size();
-    for (const std::vector<Pair>& part : found) {
-        places.push_back(total);
-        total += part.size();
-    }
-    out.resize(total);
-    parallel_ranges(tasks, chunks.count, 1, [&](std::size_t k, std::size_t) {
-        std::copy(found[k].begin(), found[k].end(), out.begin() + static_cast<std::ptrdiff_t>(places[k]));
-    });
 }
 
 void RowGrid::find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,

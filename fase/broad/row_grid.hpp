@@ -61,11 +61,11 @@ public:
         if (moving_.traverse(region, visit)) resting_.traverse(region, visit);
     }
 
-    void find_pairs(std::vector<Pair>& out) const { find(true, out); }
+    void find_pairs(std::vector<Pair>& out) const { find(nullptr, true, out); }
     /// The pairs of which one box is awake: those that rest are not tested against each other.
-    void find_awake_pairs(std::vector<Pair>& out) const { find(false, out); }
+    void find_awake_pairs(std::vector<Pair>& out) const { find(nullptr, false, out); }
     /// The same pairs as find_pairs(out), in the same order for any number of threads.
-    void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
+    void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const { find(&tasks, true, out); }
     /// As broad::find_pairs_of(): each asker against the ranges of the rows that it reaches.
     void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
                        std::vector<Pair>& out) const;
@@ -93,7 +93,7 @@ private:
     template <class ProxyOf, class BoxOf>
     void move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void commit(TaskRunner* tasks);
-    void find(bool resting_too, std::vector<Pair>& out) const;
+    void find(TaskRunner* tasks, bool resting_too, std::vector<Pair>& out) const;
     void find_odd(bool resting_too, std::vector<Pair>& out) const;
     template <class F> void for_each_set(F&& f) const {
         for (const RowPart* part : {&moving_, &resting_})

@@ -51,14 +51,14 @@ float share_of_places(RowSample& sample, std::array<bool, 3> wide) {
         std::min(1.0, static_cast<double>(places) / (filled_by_chance * static_cast<double>(taken.size()))));
 }
 
-void take_sample(std::span<const Move> boxes, std::size_t most, RowSample& sample) {
+template <class Row> void take_sample(std::span<const Row> boxes, std::size_t most, RowSample& sample) {
     sample.boxes = boxes.size();
     sample.sides.clear();
     sample.corners.clear();
     for (std::vector<float>& along : sample.sorted) along.clear();
     const std::size_t count = std::min(boxes.size(), most);
     for (std::size_t i = 0; i < count; ++i) {
-        const Aabb& box = boxes[i * boxes.size() / count].box;
+        const Aabb& box = box_of(boxes[i * boxes.size() / count]);
         if (!is_ordinary(box)) continue;  // this will be noticed later
         sample.sides.push_back(longest_side(box));
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
@@ -142,8 +142,7 @@ void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit
     const auto wide = std::count_if(sample.ranges.begin(), sample.ranges.end(),
                                     [&](const Range& range) { return range.length > 4 * most_sides; });
     const double share = settings.side_share * (wide < 3 ? 1.25 : 1);
-    double cell =
-        std::max(std::min(share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
+    double cell = std::max(std::min(share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
     if (settings.cell > 0) cell = settings.cell;
     if (!(cell > 1e-30)) cell = 1;
 
@@ -171,9 +170,8 @@ void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit
     }
 }
 
-}  // namespace
-
-void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+template <class Row>
+void fit_rows_to(std::span<const Row> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
     fit.levels.clear();
     fit.table = 0;
     if (boxes.empty()) return;
@@ -187,6 +185,15 @@ void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowS
         level.table = fit.table;
         fit.table += level.cells(0) * level.cells(1) * level.cells(2) + 1;
     }
+}
+
+}  // namespace
+
+void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+    fit_rows_to(boxes, settings, sample, fit);
+}
+void fit_rows(std::span<const Aabb> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+    fit_rows_to(boxes, settings, sample, fit);
 }
 
 }  // namespace fase::broad

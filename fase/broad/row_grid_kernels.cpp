@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "fase/broad/box_store.hpp"
 #include "fase/broad/row_grid_compress.hpp"
@@ -33,17 +34,26 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fase::broad::row_grid {
 
-HWY_EXPORT(count_cells_wide);
-HWY_EXPORT(gather_boxes_wide);
+HWY_EXPORT(count_moves_wide);
+HWY_EXPORT(count_list_wide);
+HWY_EXPORT(gather_moves_wide);
+HWY_EXPORT(gather_list_wide);
 HWY_EXPORT(find_own_pairs_wide);
 HWY_EXPORT(find_asked_pairs_wide);
 
 Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
-    return HWY_DYNAMIC_DISPATCH(count_cells_wide)(boxes, fit, keys, table);
+    return HWY_DYNAMIC_DISPATCH(count_moves_wide)(boxes, fit, keys, table);
+}
+Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+    return HWY_DYNAMIC_DISPATCH(count_list_wide)(boxes, fit, keys, table);
 }
 std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,
                                   const std::array<float*, 6>& columns, Proxy* order) {
-    return HWY_DYNAMIC_DISPATCH(gather_boxes_wide)(boxes, begin, end, columns, order);
+    return HWY_DYNAMIC_DISPATCH(gather_moves_wide)(boxes, begin, end, columns, order);
+}
+std::array<float, 3> gather_boxes(std::span<const Aabb> boxes, std::size_t begin, std::size_t end,
+                                  const std::array<float*, 6>& columns, Proxy* order) {
+    return HWY_DYNAMIC_DISPATCH(gather_list_wide)(boxes, begin, end, columns, order);
 }
 void find_own_pairs(const RowView& set, std::size_t begin, std::size_t end, PairBlock& out) {
     HWY_DYNAMIC_DISPATCH(find_own_pairs_wide)(set, begin, end, out);

@@ -52,10 +52,13 @@ struct Counted {
 /// Writes to keys[i] (as bits of a float) which counter of `table` box i belongs to, and counts it there. Up to 8 keys
 /// more may be written over.
 Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table);
+Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table);
 
 /// Puts box order[i] into place i of the columns, for `begin` <= i < `end`, and its proxy over order[i]. Returns the
-/// longest sides of these boxes.
+/// longest sides of these boxes. The proxies of a list of boxes are their places in it.
 std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,
+                                  const std::array<float*, 6>& columns, Proxy* order);
+std::array<float, 3> gather_boxes(std::span<const Aabb> boxes, std::size_t begin, std::size_t end,
                                   const std::array<float*, 6>& columns, Proxy* order);
 
 /// The pairs of the records from `begin` to `end` with later ones of their level and with all of lower levels.

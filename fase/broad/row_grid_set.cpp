@@ -41,7 +41,7 @@ template <class Item, class Key> void sort_by_digit(std::vector<Item>& items, st
 
 }  // namespace
 
-void RowSet::fit(std::span<const Move> boxes, const RowGridSettings& settings) {
+template <class Row> void RowSet::fit(std::span<const Row> boxes, const RowGridSettings& settings) {
     fit_rows(boxes, settings, sample_, fit_);
     // Room for other cells too, so that choosing anew seldom asks for memory.
     if (table_.capacity() < fit_.table) table_.reserve(fit_.table + fit_.table / 4);
@@ -73,7 +73,8 @@ std::array<std::size_t, 6> RowSet::column_places() const {
     return places;
 }
 
-bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
+template <class Row>
+bool RowSet::build_from(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
     count_ = boxes.size();
     dead_ = 0;
     rows_.clear();
@@ -102,7 +103,8 @@ bool RowSet::build(std::span<const Move> boxes, const RowGridSettings& settings,
 }
 
 /// Counts the boxes of each cell, part by part; keys stand where the first column will be. False: one is not ordinary.
-bool RowSet::count(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
+template <class Row>
+bool RowSet::count(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
     for (;;) {
         table_.resize(parts_ * fit_.table);
         std::array<row_grid::Counted, most_parts> counted;
@@ -110,7 +112,7 @@ bool RowSet::count(std::span<const Move> boxes, const RowGridSettings& settings,
             const std::size_t part = begin / part_length();
             std::uint32_t* const mine = table_.data() + part * fit_.table;
             std::fill(mine, mine + fit_.table, 0);
-            const std::span<const Move> some = boxes.subspan(begin, end - begin);
+            const std::span<const Row> some = boxes.subspan(begin, end - begin);
             counted[part] = row_grid::count_cells(some, fit_, columns_.data() + begin, mine);
         });
         std::size_t outside = 0;
@@ -159,7 +161,7 @@ void RowSet::place() {
     }
 }
 
-void RowSet::gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks) {
+template <class Row> void RowSet::gather(std::span<const Row> boxes, RowLevel& level, TaskRunner* tasks) {
     std::array<float*, 6> columns;
     const std::array<std::size_t, 6> places = column_places();
     for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
@@ -175,14 +177,14 @@ void RowSet::gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* ta
 }
 
 /// Orders the level's boxes, of which there are only the numbers yet, by row and lower corner along it.
-void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
+template <class Row> void RowSet::sort_listed(std::span<const Row> boxes, RowLevel& level) {
     const auto [ax, ay, az] = fit_.axis;
     level.first_row = static_cast<std::uint32_t>(rows_.size());
     items_.clear();
     std::uint64_t any = 0, all = ~std::uint64_t{0};
     const auto biased = [](std::int32_t v) { return static_cast<std::uint32_t>(v) + 0x80000000u; };
     for (std::uint32_t i = level.first; i < level.first + level.count; ++i) {
-        Vec3 lo = boxes[proxies_[i]].box.lo;
+        Vec3 lo = box_of(boxes[proxies_[i]]).lo;
         const std::uint64_t row =
             std::uint64_t{biased(level.listed_cell(ay, lo[ay]))} << 32 | biased(level.listed_cell(az, lo[az]));
         any |= row;
@@ -207,6 +209,9 @@ void RowSet::sort_listed(std::span<const Move> boxes, RowLevel& level) {
     level.row_count = static_cast<std::uint32_t>(rows_.size()) - level.first_row;
     rows_.push_back({INT32_MAX, INT32_MAX, level.first + level.count});
 }
+
+template bool RowSet::build_from(std::span<const Move>, const RowGridSettings&, TaskRunner*);
+template bool RowSet::build_from(std::span<const Aabb>, const RowGridSettings&, TaskRunner*);
 
 /// Not a number across the rows, of those below zero: as every difference to it is, and so it is apart from all boxes.
 /// Along the row it stays where it is, for rows in order.

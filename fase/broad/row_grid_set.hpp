@@ -90,8 +90,12 @@ struct RowSample {
     }
 };
 
+inline const Aabb& box_of(const Move& m) { return m.box; }
+inline const Aabb& box_of(const Aabb& box) { return box; }
+
 /// Chooses from a sample of the boxes, which must be ordinary. O(sample log sample).
 void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
+void fit_rows(std::span<const Aabb> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
 
 /// A row of a listed level that holds a box: its boxes run to the first of the next row.
 struct ListedRow {
@@ -130,7 +134,13 @@ class RowSet {
 public:
     /// The boxes must be ordinary (see is_ordinary()). When one is not, nothing is stored and the answer is false.
     /// What is stored does not depend on `tasks`; without, one thread does all.
-    bool build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr);
+    bool build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, tasks);
+    }
+    /// The same for a list: the proxies are the places in it.
+    bool build(std::span<const Aabb> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, tasks);
+    }
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
     void kill(std::size_t record);
@@ -180,18 +190,21 @@ private:
     std::vector<std::array<float, 3>> reaches_;   // scratch of gather
     RowSample sample_;                            // scratch of fit
 
-    void fit(std::span<const Move> boxes, const RowGridSettings& settings);
+    template <class Row>
+    bool build_from(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks);
+    template <class Row> void fit(std::span<const Row> boxes, const RowGridSettings& settings);
     void make_room();
-    [[nodiscard]] bool count(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks);
+    template <class Row>
+    [[nodiscard]] bool count(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks);
     void sum_counts();
     void place();
-    void gather(std::span<const Move> boxes, RowLevel& level, TaskRunner* tasks);
+    template <class Row> void gather(std::span<const Row> boxes, RowLevel& level, TaskRunner* tasks);
     /// A multiple of 64: count_cells() writes keys by the vector, and must not write over those of another part.
     [[nodiscard]] std::size_t part_length() const { return ((count_ + parts_ - 1) / parts_ + 63) / 64 * 64; }
     [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
     RecordSpan shift(std::uint32_t hole, std::uint32_t place);
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;
-    void sort_listed(std::span<const Move> boxes, RowLevel& level);
+    template <class Row> void sort_listed(std::span<const Row> boxes, RowLevel& level);
     [[nodiscard]] std::string broken_record(const RowLevel& level, std::size_t i) const;
 };
 

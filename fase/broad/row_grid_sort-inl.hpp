@@ -1,75 +1,94 @@
 /// Sorting boxes into cells, for one SIMD target. Included inside its namespace by row_grid_kernels.cpp, hence no
 /// #pragma once and no includes.
 
-HWY_INLINE std::uint32_t counter_of(const Move& m, const RowFit& fit, std::size_t level_index) {
+HWY_INLINE std::uint32_t counter_of(const Aabb& box, const RowFit& fit, std::size_t level_index) {
     const RowLevel& level = fit.levels[level_index];
-    return level.table + 1 + level.cell(0, m.box.lo.x) * level.stride[0] + level.cell(1, m.box.lo.y) * level.stride[1] +
-           level.cell(2, m.box.lo.z) * level.stride[2];
+    return level.table + 1 + level.cell(0, box.lo.x) * level.stride[0] + level.cell(1, box.lo.y) * level.stride[1] +
+           level.cell(2, box.lo.z) * level.stride[2];
 }
 
-inline std::size_t level_for(const Move& m, const RowFit& fit) {
-    const Vec3 e = extent(m.box);
+inline std::size_t level_for(const Aabb& box, const RowFit& fit) {
+    const Vec3 e = extent(box);
     const float side = std::max(e.x, std::max(e.y, e.z));
     std::size_t k = 0;
     while (k + 1 < fit.levels.size() && !(side <= fit.levels[k].limit)) ++k;
     return k;
 }
 
+/// The proxy of a box of a list.
+HWY_INLINE Proxy proxy_of(const Move& m, std::uint32_t) { return m.proxy; }
+HWY_INLINE Proxy proxy_of(const Aabb&, std::uint32_t place) { return place; }
+
 #if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
-inline Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+template <class Row>
+Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     const RowLevel& low = fit.levels[0];
     Counted found;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const std::uint32_t counter = counter_of(boxes[i], fit, level_for(boxes[i], fit));
+        const Aabb& box = box_of(boxes[i]);
+        const std::uint32_t counter = counter_of(box, fit, level_for(box, fit));
         keys[i] = std::bit_cast<float>(counter);
         ++table[counter];
         bool far = false;
-        Vec3 lo = boxes[i].box.lo;
+        Vec3 lo = box.lo;
         for (int a = 0; a < 3; ++a) {
             const auto k = static_cast<std::size_t>(a);
             const float t = (lo[a] - low.origin[k]) * low.per_cell[k];
             far |= t < -1 || t > low.last[k] + 2;
         }
         found.outside += far ? 1 : 0;
-        found.odd |= !is_ordinary(boxes[i].box);
+        found.odd |= !is_ordinary(box);
     }
     return found;
 }
 
-inline std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
-                                              const std::array<float*, 6>& columns, Proxy* order) {
+template <class Row>
+std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t begin, std::size_t end,
+                                     const std::array<float*, 6>& columns, Proxy* order) {
     Vec3 longest;
     for (std::size_t i = begin; i < end; ++i) {
-        const Move& m = boxes[order[i]];
-        order[i] = m.proxy;
+        const Row& row = boxes[order[i]];
+        const Aabb& box = box_of(row);
+        order[i] = proxy_of(row, order[i]);
         for (int a = 0; a < 3; ++a) {
-            Vec3 lo = m.box.lo, hi = m.box.hi;
+            Vec3 lo = box.lo, hi = box.hi;
             columns[static_cast<std::size_t>(a)][i] = lo[a] + 0.0f;
             columns[static_cast<std::size_t>(a) + 3][i] = hi[a] + 0.0f;
         }
-        longest = max(longest, extent(m.box));
+        longest = max(longest, extent(box));
     }
     std::array<float, 3> reach;
     for (int a = 0; a < 3; ++a) reach[static_cast<std::size_t>(a)] = std::nextafter(longest[a], Aabb::infinity);
     return reach;
 }
 #else
-/// Move is a proxy and six floats: rows of seven floats, of which Wide::gather8 reads eight.
-static_assert(sizeof(Move) == 28 && offsetof(Move, box) == 4);
+/// Where the six floats of a box are in a list of boxes; Wide::gather8 reads eight floats of a row.
+template <class Row> struct RowFloats;
+template <> struct RowFloats<Move> {
+    static_assert(sizeof(Move) == 28 && offsetof(Move, box) == 4);
+    static constexpr std::size_t count = 7, first = 1;
+};
+template <> struct RowFloats<Aabb> {
+    static_assert(sizeof(Aabb) == 24);
+    static constexpr std::size_t count = 6, first = 0;
+};
 
 using IntTag = hn::RebindToSigned<Wide::Tag>;
 
-/// Boxes turned into columns, a lane a box: proxy, lo x y z, hi x y z, and what lies behind.
-struct Turned {
+/// Boxes of a list turned into columns, a lane a box.
+template <class Row> struct Turned {
+    static constexpr std::size_t first = RowFloats<Row>::first;
     Wide row[8];
 
+    HWY_INLINE Wide lo(std::size_t a) const { return row[first + a]; }
+    HWY_INLINE Wide hi(std::size_t a) const { return row[first + 3 + a]; }
     /// `order` names Wide::lanes boxes, the last of all not among them.
-    HWY_INLINE void read(const Move* boxes, const std::uint32_t* order) {
-        Wide::gather8(reinterpret_cast<const float*>(boxes), order, 7, row);
+    HWY_INLINE void read(const Row* boxes, const std::uint32_t* order) {
+        Wide::gather8(reinterpret_cast<const float*>(boxes), order, RowFloats<Row>::count, row);
     }
     /// Any boxes: copied to where more may be read.
-    HWY_INLINE void read_copies(const Move* boxes, const std::uint32_t* order) {
-        std::array<Move, Wide::lanes + 1> copies;
+    HWY_INLINE void read_copies(const Row* boxes, const std::uint32_t* order) {
+        std::array<Row, Wide::lanes + 1> copies;
         std::array<std::uint32_t, Wide::lanes> copy_order;
         for (std::uint32_t k = 0; k < Wide::lanes; ++k) {
             copies[k] = boxes[order[k]];
@@ -77,14 +96,15 @@ struct Turned {
         }
         read(copies.data(), copy_order.data());
     }
-    HWY_INLINE hn::Vec<Wide::Tag> longest_side() const {
-        const auto x = hn::Sub(row[4].v, row[1].v), y = hn::Sub(row[5].v, row[2].v), z = hn::Sub(row[6].v, row[3].v);
-        return hn::Max(x, hn::Max(y, z));
+    /// The proxies of the boxes that were read.
+    HWY_INLINE void store_proxies(Proxy* to) const {
+        if constexpr (std::is_same_v<Row, Move>) row[0].store(reinterpret_cast<float*>(to));
     }
 };
 
-Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
-                         std::uint32_t* HWY_RESTRICT table) {
+template <class Row>
+Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
+                       std::uint32_t* HWY_RESTRICT table) {
     constexpr std::size_t lanes = Wide::lanes;
     const Wide::Tag d;
     const IntTag di;
@@ -111,7 +131,7 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
         std::array<std::uint32_t, lanes> order;
         for (std::size_t k = 0; k < lanes; ++k)
             order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
-        Turned turned;
+        Turned<Row> turned;
         if (i + lanes < boxes.size()) {
             turned.read(boxes.data(), order.data());
         } else {
@@ -120,10 +140,10 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
         auto far = hn::Lt(zero, zero);
         auto counter = first_counter;
         for (std::size_t a = 0; a < 3; ++a) {  // as RowLevel::cell()
-            const auto t = hn::Mul(hn::Sub(turned.row[1 + a].v, origin[a]), per_cell[a]);
+            const auto lo = turned.lo(a).v, hi = turned.hi(a).v;
+            const auto t = hn::Mul(hn::Sub(lo, origin[a]), per_cell[a]);
             const auto inside = hn::Min(hn::Max(t, zero), last[a]);
             counter = hn::Add(counter, hn::Mul(hn::ConvertTo(di, inside), stride[a]));
-            const auto lo = turned.row[1 + a].v, hi = turned.row[4 + a].v;
             const auto within = hn::And(hn::Le(hn::Abs(lo), far_away), hn::Le(hn::Abs(hi), far_away));
             all_ordinary = hn::And(all_ordinary, hn::And(within, hn::Le(lo, hi)));
             far = hn::Or(far, hn::Or(hn::Lt(t, before), hn::Gt(t, hn::Add(last[a], hn::Add(one, one)))));
@@ -131,12 +151,13 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
         alignas(64) std::array<std::int32_t, lanes> counters;
         hn::StoreU(counter, di, counters.data());
         hn::StoreU(hn::BitCast(d, counter), d, keys + i);
-        const auto above = hn::Gt(turned.longest_side(), limit);
+        const auto side = [&](std::size_t a) { return hn::Sub(turned.hi(a).v, turned.lo(a).v); };
+        const auto above = hn::Gt(hn::Max(side(0), hn::Max(side(1), side(2))), limit);
         if (HWY_UNLIKELY(!hn::AllFalse(d, above)) || count < lanes) {
             for (std::size_t k = 0; k < count; ++k) {
-                const Move& m = boxes[i + k];
-                const std::size_t level = level_for(m, fit);
-                if (level != 0) counters[k] = static_cast<std::int32_t>(counter_of(m, fit, level));
+                const Aabb& box = box_of(boxes[i + k]);
+                const std::size_t level = level_for(box, fit);
+                if (level != 0) counters[k] = static_cast<std::int32_t>(counter_of(box, fit, level));
                 keys[i + k] = std::bit_cast<float>(counters[k]);
             }
         }
@@ -153,8 +174,9 @@ Counted count_cells_wide(std::span<const Move> boxes, const RowFit& fit, float* 
     return found;
 }
 
-std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
-                                       const std::array<float*, 6>& columns, Proxy* HWY_RESTRICT order) {
+template <class Row>
+std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t begin, std::size_t end,
+                                     const std::array<float*, 6>& columns, Proxy* HWY_RESTRICT order) {
     constexpr std::size_t lanes = Wide::lanes, ahead = 32;
     const Wide::Tag d;
     const auto last = static_cast<std::uint32_t>(boxes.size() - 1);
@@ -164,7 +186,7 @@ std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t 
             for (std::size_t k = 0; k < lanes; ++k) {
                 const char* box = reinterpret_cast<const char*>(boxes.data() + order[i + ahead + k]);
                 __builtin_prefetch(box);
-                __builtin_prefetch(box + sizeof(Move) - 1);
+                __builtin_prefetch(box + sizeof(Row) - 1);
             }
         }
         std::array<std::uint32_t, lanes> mine;
@@ -173,23 +195,22 @@ std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t 
             mine[k] = order[std::min(i + k, end - 1)];
             any_last |= mine[k] == last;
         }
-        Turned turned;
+        Turned<Row> turned;
         if (HWY_UNLIKELY(any_last)) {
             turned.read_copies(boxes.data(), mine.data());
         } else {
             turned.read(boxes.data(), mine.data());
         }
-        for (std::size_t a = 0; a < 3; ++a)
-            reach[a] = hn::Max(reach[a], hn::Sub(turned.row[4 + a].v, turned.row[1 + a].v));
+        for (std::size_t a = 0; a < 3; ++a) reach[a] = hn::Max(reach[a], hn::Sub(turned.hi(a).v, turned.lo(a).v));
         if (i + lanes <= end) {
-            turned.row[0].store(reinterpret_cast<float*>(order + i));
+            turned.store_proxies(order + i);
             for (std::size_t k = 0; k < 6; ++k)  // one zero, not two
-                (turned.row[1 + k] + Wide::set(0)).store(columns[k] + i);
+                ((k < 3 ? turned.lo(k) : turned.hi(k - 3)) + Wide::set(0)).store(columns[k] + i);
         } else {
             for (std::size_t k = 0; i + k < end; ++k) {
-                const Move& m = boxes[mine[k]];
-                order[i + k] = m.proxy;
-                const float bounds[6] = {m.box.lo.x, m.box.lo.y, m.box.lo.z, m.box.hi.x, m.box.hi.y, m.box.hi.z};
+                const Aabb& box = box_of(boxes[mine[k]]);
+                order[i + k] = proxy_of(boxes[mine[k]], mine[k]);
+                const float bounds[6] = {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
                 for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c] + 0.0f;
             }
         }
@@ -200,3 +221,18 @@ std::array<float, 3> gather_boxes_wide(std::span<const Move> boxes, std::size_t 
     return longest;
 }
 #endif
+
+Counted count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+    return count_cells_of(boxes, fit, keys, table);
+}
+Counted count_list_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+    return count_cells_of(boxes, fit, keys, table);
+}
+std::array<float, 3> gather_moves_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
+                                       const std::array<float*, 6>& columns, Proxy* order) {
+    return gather_boxes_of(boxes, begin, end, columns, order);
+}
+std::array<float, 3> gather_list_wide(std::span<const Aabb> boxes, std::size_t begin, std::size_t end,
+                                      const std::array<float*, 6>& columns, Proxy* order) {
+    return gather_boxes_of(boxes, begin, end, columns, order);
+}

@@ -132,18 +132,20 @@ struct Asker {
 private:
     Asker() = default;
 
-    /// Negative in the lanes where the boxes are apart along some axis: a difference is that of the true values, or 0 if
-    /// they are equal, and NaN keeps its sign. Differences instead of comparisons: a processor makes more of them at a
-    /// time. What is in memory stands to the right, where x86 can read it in the same instruction.
+    /// Negative in the lanes where the boxes are apart along some axis: a difference is that of the true values, or 0
+    /// if they are equal, and NaN keeps its sign. Differences instead of comparisons: a processor makes more of them at
+    /// a time. What is in memory stands to the right, where x86 can read it in the same instruction.
     template <Side y, Side z> HWY_INLINE Floats gaps(const Columns& c, std::size_t j) const {
         const FloatTag d;
         const float* const at = c.lo_x + j;
         auto apart = hn::Or(hn::Sub(hi_x, hn::LoadU(d, at)), hn::Add(minus_lo_x, hn::LoadU(d, at + c.stride3)));
         if constexpr (y == Side::Unknown)
-            apart = hn::Or3(apart, hn::Sub(hi_y, hn::LoadU(d, at + c.stride)), hn::Add(minus_lo_y, hn::LoadU(d, at + 4 * c.stride)));
+            apart = hn::Or3(apart, hn::Sub(hi_y, hn::LoadU(d, at + c.stride)),
+                            hn::Add(minus_lo_y, hn::LoadU(d, at + 4 * c.stride)));
         if constexpr (y == Side::Later) apart = hn::Or(apart, hn::Sub(hi_y, hn::LoadU(d, at + c.stride)));
         if constexpr (z == Side::Unknown)
-            apart = hn::Or3(apart, hn::Sub(hi_z, hn::LoadU(d, at + 2 * c.stride)), hn::Add(minus_lo_z, hn::LoadU(d, at + c.stride5)));
+            apart = hn::Or3(apart, hn::Sub(hi_z, hn::LoadU(d, at + 2 * c.stride)),
+                            hn::Add(minus_lo_z, hn::LoadU(d, at + c.stride5)));
         if constexpr (z == Side::Later) apart = hn::Or(apart, hn::Sub(hi_z, hn::LoadU(d, at + 2 * c.stride)));
         if constexpr (z == Side::Earlier) apart = hn::Or(apart, hn::Add(minus_lo_z, hn::LoadU(d, at + c.stride5)));
         static_assert(y != Side::Earlier);
