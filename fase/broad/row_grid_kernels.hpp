@@ -46,7 +46,7 @@ struct Askers {
 inline constexpr std::size_t past_caches = std::size_t{1} << 17;
 
 struct Counted {
-    std::size_t outside = 0;  ///< boxes that lie outside of their level's cells by more than the size of one
+    std::size_t outside = 0;  ///< about so many boxes lie outside of their level's cells by more than the size of one
     bool odd = false;         ///< one of them is not ordinary
 };
 /// Writes to keys[i] (as bits of a float) which counter of `table` box i belongs to, and counts it there. Up to 8 keys

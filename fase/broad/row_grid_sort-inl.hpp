@@ -121,38 +121,44 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
     const auto zero = hn::Zero(d), before = hn::Set(d, -1.0f), one = hn::Set(d, 1.0f);
     const auto first_counter = hn::Set(di, static_cast<std::int32_t>(low.table + 1));
     const auto far_away = hn::Set(d, largest_built);
-    auto all_ordinary = hn::Eq(zero, zero);
+    // As is_ordinary() of all: sides are numbers and none is negative, and so are bounds; the outermost of these
+    // decide.
+    auto all_sides = hn::Eq(zero, zero);
+    auto lowest = zero, highest = zero;
+    std::array<std::uint32_t, lanes> in_turn;
+    for (std::size_t k = 0; k < lanes; ++k) in_turn[k] = static_cast<std::uint32_t>(k);
     Counted found;
-    const bool later = boxes.size() >= past_caches;  // counters are on their way while other boxes are looked at
-    constexpr std::size_t behind = 32;
+    const bool later = boxes.size() >= past_caches;    // counters are on their way while other boxes are looked at
+    constexpr std::size_t behind = 32, looked_at = 4;  // one vector in so many, for the boxes outside
     std::size_t counted = 0;
     for (std::size_t i = 0; i < boxes.size(); i += lanes) {
         const std::size_t count = std::min(lanes, boxes.size() - i);
-        std::array<std::uint32_t, lanes> order;
-        for (std::size_t k = 0; k < lanes; ++k)
-            order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
         Turned<Row> turned;
         if (i + lanes < boxes.size()) {
-            turned.read(boxes.data(), order.data());
+            turned.read(boxes.data() + i, in_turn.data());
         } else {
+            std::array<std::uint32_t, lanes> order;
+            for (std::size_t k = 0; k < lanes; ++k)
+                order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
             turned.read_copies(boxes.data(), order.data());
         }
-        auto far = hn::Lt(zero, zero);
         auto counter = first_counter;
+        hn::Vec<Wide::Tag> t[3];
         for (std::size_t a = 0; a < 3; ++a) {  // as RowLevel::cell()
-            const auto lo = turned.lo(a).v, hi = turned.hi(a).v;
-            const auto t = hn::Mul(hn::Sub(lo, origin[a]), per_cell[a]);
-            const auto inside = hn::Min(hn::Max(t, zero), last[a]);
+            t[a] = hn::Mul(hn::Sub(turned.lo(a).v, origin[a]), per_cell[a]);
+            const auto inside = hn::Min(hn::Max(t[a], zero), last[a]);
             counter = hn::Add(counter, hn::Mul(hn::ConvertTo(di, inside), stride[a]));
-            const auto within = hn::And(hn::Le(hn::Abs(lo), far_away), hn::Le(hn::Abs(hi), far_away));
-            all_ordinary = hn::And(all_ordinary, hn::And(within, hn::Le(lo, hi)));
-            far = hn::Or(far, hn::Or(hn::Lt(t, before), hn::Gt(t, hn::Add(last[a], hn::Add(one, one)))));
+            lowest = hn::Min(lowest, turned.lo(a).v);
+            highest = hn::Max(highest, turned.hi(a).v);
         }
         alignas(64) std::array<std::int32_t, lanes> counters;
         hn::StoreU(counter, di, counters.data());
         hn::StoreU(hn::BitCast(d, counter), d, keys + i);
         const auto side = [&](std::size_t a) { return hn::Sub(turned.hi(a).v, turned.lo(a).v); };
-        const auto above = hn::Gt(hn::Max(side(0), hn::Max(side(1), side(2))), limit);
+        const auto x = side(0), y = side(1), z = side(2);
+        const auto above = hn::Gt(hn::Max(x, hn::Max(y, z)), limit);
+        const auto numbers = hn::Lt(hn::Add(x, hn::Add(y, z)), hn::Set(d, Aabb::infinity));
+        all_sides = hn::And(all_sides, hn::And(numbers, hn::Ge(hn::Min(x, hn::Min(y, z)), zero)));
         if (HWY_UNLIKELY(!hn::AllFalse(d, above)) || count < lanes) {
             for (std::size_t k = 0; k < count; ++k) {
                 const Aabb& box = box_of(boxes[i + k]);
@@ -167,10 +173,16 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
         } else {
             for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
         }
-        found.outside += hn::CountTrue(d, far);
+        if (i % (looked_at * lanes) == 0) {
+            auto far = hn::Lt(zero, zero);
+            for (std::size_t a = 0; a < 3; ++a)
+                far = hn::Or(far, hn::Or(hn::Lt(t[a], before), hn::Gt(t[a], hn::Add(last[a], hn::Add(one, one)))));
+            found.outside += looked_at * hn::CountTrue(d, far);
+        }
     }
     for (; later && counted < boxes.size(); ++counted) ++table[std::bit_cast<std::uint32_t>(keys[counted])];
-    found.odd = !hn::AllTrue(d, all_ordinary);
+    found.odd =
+        !hn::AllTrue(d, hn::And(all_sides, hn::And(hn::Ge(lowest, hn::Neg(far_away)), hn::Le(highest, far_away))));
     return found;
 }
 
