@@ -69,6 +69,7 @@ struct Neighbours {
     bool has_z0;                     // is there more than one row along z?
 };
 constexpr std::size_t batch_size = 256;
+constexpr std::size_t asking_at_once = 16, asking_vectors = asking_at_once / width;
 
 /// Some records in a row, sorted out by which rows they reach into, so that the loops over each kind have no branch
 /// that cannot be foretold.
@@ -81,7 +82,7 @@ struct Batch {
     std::array<std::uint32_t, batch_size + width> from, to, from_z0;
     /// By record: how many behind it in its own row matter, and one more; by vector of records: the most of these.
     std::array<std::int32_t, batch_size + width> behind;
-    std::array<std::int32_t, batch_size / width> most_behind;
+    std::array<std::int32_t, batch_size / width + asking_vectors> most_behind;
 };
 
 /// Looks up the cells that matter to each record of a batch, and puts it to those of its kind.
@@ -137,6 +138,8 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
         put(2, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
         put(3, hn::And(valid, hn::And(reaches_y, reaches_z)));
     }
+    const std::size_t done = (batch.end - batch.begin + width - 1) / width;
+    for (std::size_t k = 0; k < asking_vectors; ++k) batch.most_behind[done + k] = 0;
 }
 
 /// The ranges that a box of a kind is tested against, in the order in which they lie.
@@ -158,25 +161,38 @@ template <bool reaches_y, bool reaches_z> struct Ranges {
     }
 };
 
-/// Each record of the batch against those behind it in its row: a vector of records against the one that begins a place
-/// further on, two places further on, and so forth.
+/// Each record of the batch against those behind it in its row: some records against those that lie a place further on,
+/// two places further on, and so forth. So many at a time with any width of vectors: the order of the pairs is the
+/// same.
 inline void test_own_row(const Columns& columns, const Batch& batch, PairBlock& block) {
     const WordTag d;
     const hn::RebindToSigned<WordTag> di;
     const Columns c = columns;
     Writer out(block);
-    for (std::size_t i = batch.begin; i < batch.end; i += width) {
-        const std::int32_t most = batch.most_behind[(i - batch.begin) / width];
+    for (std::size_t i = batch.begin; i < batch.end; i += asking_at_once) {
+        const std::int32_t* const mosts = batch.most_behind.data() + (i - batch.begin) / width;
+        const std::int32_t most = *std::max_element(mosts, mosts + asking_vectors);
         constexpr std::int32_t steps = 32;
         for (std::int32_t k = 1; k < most;) {
-            out.make_room<steps>();
-            const Asker askers = Asker::several(c, i);
-            const auto behind = hn::LoadU(di, batch.behind.data() + (i - batch.begin));
-            for (const std::int32_t stop = std::min(most, k + steps); k < stop; ++k) {
-                const std::size_t j = i + static_cast<std::size_t>(k);
+            out.make_room<steps * asking_vectors>();
+            const std::int32_t first = k, stop = std::min(most, k + steps);
+            const auto test = [&](const Asker& askers, std::size_t vector, std::int32_t step) HWY_ATTR {
+                const std::size_t j = i + vector * width + static_cast<std::size_t>(step);
+                const auto behind = hn::LoadU(di, batch.behind.data() + (i - batch.begin) + vector * width);
                 const std::uint32_t bits = askers.overlapped<Side::Unknown, Side::Unknown>(c, j) &
-                                           bits_of(hn::RebindMask(FloatTag(), hn::Gt(behind, hn::Set(di, k))));
+                                           bits_of(hn::RebindMask(FloatTag(), hn::Gt(behind, hn::Set(di, step))));
                 out.add(askers.proxy, hn::LoadU(d, c.proxies + j), bits);
+            };
+            if constexpr (asking_vectors == 1) {
+                const Asker askers = Asker::several(c, i);
+                for (k = first; k < stop; ++k) test(askers, 0, k);
+            } else {
+                std::array<Asker, asking_vectors> askers;
+                for (std::size_t vector = 0; vector < asking_vectors; ++vector)
+                    if (mosts[vector] > 0) askers[vector] = Asker::several(c, i + vector * width);
+                for (k = first; k < stop; ++k)
+                    for (std::size_t vector = 0; vector < asking_vectors; ++vector)
+                        if (k < mosts[vector]) test(askers[vector], vector, k);
             }
         }
     }

@@ -88,6 +88,7 @@ struct Asker {
     Floats minus_lo_x, minus_lo_y, minus_lo_z, hi_x, hi_y, hi_z;
     Words proxy;
 
+    Asker() = default;
     static HWY_INLINE Asker several(const Columns& c, std::size_t i) {
         const FloatTag d;
         const float* const at = c.lo_x + i;
@@ -130,8 +131,6 @@ struct Asker {
     }
 
 private:
-    Asker() = default;
-
     /// Negative in the lanes where the boxes are apart along some axis: a difference is that of the true values, or 0
     /// if they are equal, and NaN keeps its sign. Differences instead of comparisons: a processor makes more of them at
     /// a time. What is in memory stands to the right, where x86 can read it in the same instruction.
