@@ -189,6 +189,49 @@ TEST(RowGrid, TakesMinusZeroForZero) {
     std::vector<Move> boxes{{0, {{-1, -1, -1}, {-0.0f, -0.0f, -0.0f}}}, {1, {{0.0f, 0.0f, 0.0f}, {1, 1, 1}}}};
     for (const Rows rows : {Rows::Table, Rows::List})
         EXPECT_EQ(found(grid_of(boxes, {.rows = rows})), (std::vector<Pair>{{0, 1}}));
+    const std::vector<Move> asker{{2, boxes[0].box}};
+    for (const Move& stored : {Move{1, boxes[1].box}, Move{1, {{-0.0f, -0.0f, -0.0f}, {1, 1, 1}}}}) {
+        std::vector<Pair> asked;
+        grid_of({stored}).find_pairs_of(asker, {}, asked);
+        EXPECT_EQ(asked, (std::vector<Pair>{{1, 2}}));
+    }
+}
+
+TEST(RowGrid, MovesManyAtOnceToWhereItMovesThemOneByOne) {
+    const auto many = make_thread_runner(3);
+    const std::vector<Move> boxes = gas(50000, 12);
+    for (TaskRunner* const tasks : {static_cast<TaskRunner*>(nullptr), many.get()}) {
+        RowGrid together = grid_of(boxes), apart = grid_of(boxes);
+        for (RowGrid* const grid : {&together, &apart}) {  // one in ten rests
+            for (Proxy p = 0; p < boxes.size(); p += 10) grid->set_awake(p, false);
+            grid->commit();
+        }
+        Random random(6);
+        std::vector<Aabb> by_proxy;
+        for (const Move& m : boxes) by_proxy.push_back(m.box);
+        for (const std::uint32_t one_in : {1u, 2u, 1000u, 1u, 3u, 1u}) {
+            std::vector<Proxy> proxies;
+            std::vector<Move> moves;
+            for (Proxy p = 0; p < boxes.size(); ++p) {
+                if (random.below(one_in) != 0) continue;
+                const Vec3 by = place(random, -1, 1);
+                by_proxy[p] = {boxes[p].box.lo + by, boxes[p].box.hi + by};
+                if (random.below(5000) == 0) by_proxy[p] = Aabb::everything();
+                proxies.push_back(p);
+                moves.push_back({p, by_proxy[p]});
+                apart.move(p, by_proxy[p]);
+            }
+            if (one_in == 2) {
+                together.move(tasks, moves);
+            } else {
+                together.move(tasks, proxies, by_proxy);
+            }
+            together.commit();
+            apart.commit();
+            ASSERT_EQ(together.broken_invariant(), "");
+            ASSERT_TRUE(sorted_pairs(together) == sorted_pairs(apart)) << one_in;
+        }
+    }
 }
 
 TEST(RowGrid, KeepsItsCellsSmallWhenOneBoxIsFarAway) {
