@@ -2,33 +2,28 @@
 #include "fase/broad/pair_finder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <numeric>
 
 #include "fase/core/check.hpp"
+#include "fase/core/collect.hpp"
 
 namespace fase::broad {
 namespace {
 
 bool is_absent(const Aabb& box) { return box == Aabb{}; }
 
-/// Appends the places at which the boxes are others than before, bit by bit (a NaN that stays is no change), in order;
-/// `before` is as they are then.
-void take_changed(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<Aabb> before, std::vector<Proxy>& changed) {
+/// The places at which the boxes are others than before, bit by bit (a NaN that stays is no change), in order; `before`
+/// is as they are then.
+std::span<const Proxy> take_changed(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<Aabb> before,
+                                    std::vector<Proxy>& room) {
     static_assert(sizeof(Aabb) == 24);
     const auto word = [](const Aabb& box, int k) {
         std::uint64_t bits;
         std::memcpy(&bits, reinterpret_cast<const char*>(&box) + 8 * k, 8);
         return bits;
     };
-    constexpr std::size_t most_parts = 64;
-    const std::size_t grain = std::max<std::size_t>(16384, boxes.size() / most_parts + 1);
-    const std::size_t parts = (boxes.size() + grain - 1) / grain;
-    changed.resize(boxes.size());
-    std::array<std::size_t, most_parts> counts{};
-    parallel_ranges(tasks, parts, 1, [&](std::size_t part, std::size_t) {
-        const std::size_t begin = part * grain, end = std::min(boxes.size(), begin + grain);
-        Proxy* const out = changed.data() + begin;
+    return collect(tasks, boxes.size(), room, [&](std::size_t begin, std::size_t end, Proxy* out) {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const Aabb &old = before[i], &now = boxes[i];
@@ -42,16 +37,8 @@ void take_changed(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<Aabb
         } else {
             for (const Proxy p : std::span(out, count)) before[p] = boxes[p];
         }
-        counts[part] = count;
+        return count;
     });
-    std::size_t all = 0;
-    for (std::size_t part = 0; part < parts; ++part) {
-        if (all != part * grain)
-            std::copy_n(changed.begin() + static_cast<std::ptrdiff_t>(part * grain), counts[part],
-                        changed.begin() + static_cast<std::ptrdiff_t>(all));
-        all += counts[part];
-    }
-    changed.resize(all);
 }
 
 }  // namespace
@@ -85,7 +72,7 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     }
     if (automatic_) suit_all(true);
     updates_ = 0;
-    sorts_frame_ = false;
+    sorts_frame_ = structures_lag_ = false;
     resting_.clear();
     std::vector<Pair> found;
     asleep_.find_pairs(tasks, found);
@@ -101,12 +88,32 @@ void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     boxes_.resize(boxes.size());
     populations_.resize(boxes.size(), Population::Absent);
     known_static_.resize(boxes.size(), 0);
-    take_changed(tasks, boxes, boxes_, changed_);
-    if (awake_.size() == boxes.size() &&
-        std::none_of(changed_.begin(), changed_.end(), [&](Proxy p) { return is_absent(boxes[p]); })) {
-        awake_.move(tasks, changed_, boxes_);
+    take_over(tasks, take_changed(tasks, boxes, boxes_, changed_));
+}
+
+void PairFinder::update_changed(TaskRunner& tasks, std::span<const Proxy> changed) {
+    sorts_frame_ = 2 * changed.size() > boxes_.size() && may_sort_frame() && frame_.sort(tasks, boxes_);
+    if (sorts_frame_) {
+        structures_lag_ = true;
     } else {
-        sort_out_changed(tasks);
+        take_over(tasks, changed);
+    }
+}
+
+/// What changed in boxes_ reaches the structures.
+void PairFinder::take_over(TaskRunner& tasks, std::span<const Proxy> changed) {
+    if (structures_lag_) {  // all was awake then, and is where it was
+        std::vector<Proxy> all(boxes_.size());
+        std::iota(all.begin(), all.end(), Proxy{0});
+        all.resize(awake_.size());
+        awake_.move(tasks, all, boxes_);
+        structures_lag_ = false;
+    }
+    if (awake_.size() == boxes_.size() &&
+        std::none_of(changed.begin(), changed.end(), [&](Proxy p) { return is_absent(boxes_[p]); })) {
+        awake_.move(tasks, changed, boxes_);
+    } else {
+        sort_out(tasks, changed);
     }
     constexpr std::uint32_t looks_again = 32;
     if (automatic_) suit_all(++updates_ % looks_again == 0);
@@ -114,11 +121,16 @@ void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     keep_static_pairs();
 }
 
+bool PairFinder::may_sort_frame() const {
+    constexpr std::size_t least = 1024;
+    return boxes_.size() >= least && awake_.size() == boxes_.size() && awake_.info().name == RowGrid::info.name;
+}
+
 /// When nothing rests, what a frame has in common with the one before need not be known: its boxes are sorted as they
 /// are handed over. False when something rests, comes or goes, or few boxes have moved.
 bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
-    constexpr std::size_t least = 1024, looked_at = 64;
-    if (boxes.size() < least || awake_.size() != boxes.size() || awake_.info().name != RowGrid::info.name) return false;
+    constexpr std::size_t looked_at = 64;
+    if (boxes.size() != boxes_.size() || !may_sort_frame()) return false;
     std::size_t moved = 0;
     for (std::size_t k = 0; k < looked_at; ++k) {
         const std::size_t i = k * (boxes.size() / looked_at);
@@ -128,10 +140,10 @@ bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
 }
 
 /// Each changed box moves, comes, goes or wakes.
-void PairFinder::sort_out_changed(TaskRunner& tasks) {
+void PairFinder::sort_out(TaskRunner& tasks, std::span<const Proxy> changed) {
     for (std::vector<Proxy>* list : {&moved_, &came_, &gone_, &leaving_, &static_moved_, &static_came_, &static_gone_})
         list->clear();
-    for (const Proxy p : changed_) {
+    for (const Proxy p : changed) {
         const bool goes = is_absent(boxes_[p]);
         Population& population = populations_[p];
         if (goes && population == Population::Absent) continue;

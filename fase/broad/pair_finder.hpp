@@ -39,6 +39,11 @@ public:
     /// Takes the boxes of the next frame: as many as there were, or more, which come then. Only those that changed,
     /// come or go cost more than a comparison.
     void update(TaskRunner& tasks, std::span<const Aabb> boxes);
+    /// The same for who knows which boxes change: they are written to writable_boxes() before, as many as there are,
+    /// and `changed` names their places, each once, in order. One that is named counts as changed, whatever it is. Who
+    /// begins with this stays with it until build().
+    void update_changed(TaskRunner& tasks, std::span<const Proxy> changed);
+    [[nodiscard]] std::span<Aabb> writable_boxes() { return boxes_; }
     /// Appends each current pair once, smaller place first, in no order that counts. Safe from many threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
     /// The same without those of two that rest.
@@ -65,9 +70,10 @@ private:
     KeptPairs resting_;
     bool automatic_ = false;
     std::uint32_t updates_ = 0;
-    FramePairs frame_;            // of the last update, when all was awake and stood in a row grid:
-    bool sorts_frame_ = false;    // then the structures and boxes_ know nothing of it
-    std::vector<Proxy> changed_;  // of one update
+    FramePairs frame_;             // of the last update, when all was awake and stood in a row grid:
+    bool sorts_frame_ = false;     // then the structures know nothing of it, nor does boxes_ unless they are written to
+    bool structures_lag_ = false;  // behind boxes_, which were written to
+    std::vector<Proxy> changed_;   // room for those of one update
     // The same, sorted out; those that wake both leave and come.
     std::vector<Proxy> moved_, came_, gone_, leaving_, static_moved_, static_came_, static_gone_;
 
@@ -78,7 +84,9 @@ private:
     }
     void suit_all(bool looks_closely);
     [[nodiscard]] bool sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes);
-    void sort_out_changed(TaskRunner& tasks);
+    [[nodiscard]] bool may_sort_frame() const;
+    void take_over(TaskRunner& tasks, std::span<const Proxy> changed);
+    void sort_out(TaskRunner& tasks, std::span<const Proxy> changed);
     void keep_static_pairs();
     void drop_pairs_of(std::span<const Proxy> proxies);
 };

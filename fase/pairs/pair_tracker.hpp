@@ -16,7 +16,7 @@ namespace fase::pairs {
 /// is sorted, hashed or merged, and what rests costs a comparison a box.
 ///
 /// Pairs of two that rest stay, and are not listed; but for frames in which a static box moves. Two static boxes are
-/// never a pair. 88 bytes a box beside the finder's. Not thread-safe; tasks share the work, with the same result, and
+/// never a pair. 68 bytes a box beside the finder's. Not thread-safe; tasks share the work, with the same result, and
 /// the same order for any number of threads but one.
 class PairTracker {
 public:
@@ -36,15 +36,18 @@ public:
     [[nodiscard]] std::size_t bytes() const;
 
 private:
-    broad::PairFinder finder_;
+    /// What a share of the pairs found became.
+    struct Part {
+        std::size_t staying = 0;
+        std::vector<broad::Pair> begun, ended;
+    };
+    broad::PairFinder finder_;                // of the boxes that span both places
     std::vector<passes::LastPlaces> places_;  // by box
-    std::vector<Aabb> spans_;                 // of both places
+    std::vector<broad::Proxy> changed_;       // room for those of one update
     std::vector<broad::Pair> found_;          // staying ones at the front when told
     std::vector<broad::Pair> begun_, ended_;
-    bool rest_disturbed_ = false;  // in the last frame
+    std::vector<Part> parts_;  // where there are several threads
 
-    /// Takes the new places; tells whether pairs of two that rest may have begun or ended.
-    bool advance(TaskRunner& tasks, std::span<const Aabb> boxes);
     /// Tells what became of the pairs in found_: staying ones go to its front; returns how many.
     std::size_t tell(TaskRunner& tasks);
 };
