@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -131,6 +132,20 @@ HWY_INLINE unsigned overlap_bits(const LastPlaces& a, const LastPlaces& b) {
 constexpr std::size_t portion = 1024;  // pairs
 using Bits = std::array<std::uint32_t, portion>;
 
+/// By the bits of four marks: the halves of the marked lanes of 64 bits, in order, then those of lane 0.
+constexpr auto front_of_four() {
+    std::array<std::array<std::uint32_t, 8>, 16> table{};
+    for (std::size_t marks = 0; marks < table.size(); ++marks) {
+        std::size_t to = 0;
+        for (std::uint32_t lane = 0; lane < 4; ++lane) {
+            if ((marks >> lane & 1) == 0) continue;
+            table[marks][to++] = 2 * lane;
+            table[marks][to++] = 2 * lane + 1;
+        }
+    }
+    return table;
+}
+
 /// The overlap bits of the pairs from `begin` to `end`, at most a portion.
 HWY_INLINE void ask(std::span<const LastPlaces> places, std::span<const broad::Pair> pairs, std::size_t begin,
                     std::size_t end, Bits& bits) {
@@ -144,7 +159,7 @@ HWY_INLINE void ask(std::span<const LastPlaces> places, std::span<const broad::P
             hwy::Prefetch(of + pair[k].a);
             hwy::Prefetch(of + pair[k].b);
         }
-        for (; i < end && i + ahead < pairs.size(); ++i) {
+        for (const std::size_t last = std::min(end, std::max(pairs.size(), ahead) - ahead); i < last; ++i) {
             hwy::Prefetch(of + pair[i + ahead].a);
             hwy::Prefetch(of + pair[i + ahead].b);
             bits[i - begin] = overlap_bits(of[pair[i].a], of[pair[i].b]);
@@ -158,20 +173,32 @@ struct Ends {
     broad::Pair *staying, *begun, *ended;
 };
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX2
+#define FASE_SORTS_BY_VECTORS 1
 using Words = hn::CappedTag<std::uint64_t, 8>;  // a lane is a pair
-HWY_INLINE hn::Vec<Words> front(hn::Vec<Words> all, hn::Mask<Words> which) {
-    return {_mm512_maskz_compress_epi64(which.raw, all.raw)};  // Highway 1.0 copies a table at each call
+static_assert(sizeof(broad::Pair) == sizeof(std::uint64_t));
+
+/// The marked lanes moved to the front. (hn::Compress of Highway 1.0 copies its table to the stack at each call.)
+HWY_INLINE hn::Vec<Words> front(hn::Vec<Words> all, unsigned marks) {
+#if HWY_TARGET == HWY_AVX2
+    alignas(32) static constexpr auto lanes = front_of_four();
+    const hn::Repartition<std::uint32_t, Words> halves;
+    const auto order = hn::IndicesFromVec(halves, hn::Load(halves, lanes[marks].data()));
+    return hn::BitCast(Words(), hn::TableLookupLanes(hn::BitCast(halves, all), order));
+#else
+    return {_mm512_maskz_compress_epi64(static_cast<__mmask8>(marks), all.raw)};
+#endif
 }
+#else
+#define FASE_SORTS_BY_VECTORS 0
 #endif
 
 /// Puts the pairs at `in` to the ends of the lists that their bits name.
 HWY_INLINE void sort_out(const broad::Pair* in, const Bits& bits, std::size_t count, Ends& ends) {
     Ends to = ends;
     std::size_t i = 0;
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if FASE_SORTS_BY_VECTORS
     const Words d;
-    static_assert(sizeof(broad::Pair) == sizeof(std::uint64_t));
     const hn::Rebind<std::uint32_t, Words> d_bits;
     const hn::Repartition<std::uint8_t, Words> bytes;
     const std::size_t lanes = hn::Lanes(d);
@@ -179,8 +206,9 @@ HWY_INLINE void sort_out(const broad::Pair* in, const Bits& bits, std::size_t co
     for (; i + lanes <= count; i += lanes) {
         const auto all = hn::BitCast(d, hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(in + i)));
         const auto take = [&](auto which, broad::Pair*& out) HWY_ATTR {
-            hn::StoreU(hn::BitCast(bytes, front(all, which)), bytes, reinterpret_cast<std::uint8_t*>(out));
-            out += hn::CountTrue(d, which);
+            const unsigned marks = bits_of(d, which);
+            hn::StoreU(hn::BitCast(bytes, front(all, marks)), bytes, reinterpret_cast<std::uint8_t*>(out));
+            out += std::popcount(marks);
         };
         const auto is = hn::PromoteTo(d, hn::LoadU(d_bits, bits.data() + i));
         const auto stays = hn::Eq(is, both);
@@ -190,18 +218,17 @@ HWY_INLINE void sort_out(const broad::Pair* in, const Bits& bits, std::size_t co
     }
 #endif
     for (; i < count; ++i) {
-        std::uint64_t word;
-        std::memcpy(&word, in + i, sizeof word);
-        const std::size_t stays = bits[i] == 0xff, was = (bits[i] & 0xf) == 0xf, is = bits[i] >> 4 == 0xf;
-        std::memcpy(to.staying, &word, sizeof word);
-        std::memcpy(to.begun, &word, sizeof word);
-        std::memcpy(to.ended, &word, sizeof word);
-        to.staying += stays;
-        to.begun += is - stays;
-        to.ended += was - stays;
+        std::uint64_t pair;  // moved at once
+        std::memcpy(&pair, in + i, sizeof pair);
+        const std::size_t was = (bits[i] & 0xf) == 0xf ? 1 : 0, is = bits[i] >> 4 == 0xf ? 1 : 0;
+        for (broad::Pair* out : {to.staying, to.begun, to.ended}) std::memcpy(out, &pair, sizeof pair);
+        to.staying += was & is;
+        to.begun += is & ~was;
+        to.ended += was & ~is;
     }
     ends = to;
 }
+#undef FASE_SORTS_BY_VECTORS
 
 /// By portions, without a branch that depends on boxes: what all pairs of a portion are, then each to its list.
 std::size_t tell(std::span<const LastPlaces> places, std::span<broad::Pair> pairs, std::vector<broad::Pair>& begun,
