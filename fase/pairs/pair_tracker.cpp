@@ -60,14 +60,24 @@ std::size_t PairTracker::tell(TaskRunner& tasks) {
             passes::tell(places_, all.subspan(begin, std::min(grain, all.size() - begin)), part.begun, part.ended);
     });
     std::size_t staying = 0;
-    for (std::size_t i = 0; i < parts; ++i) {
-        const Part& part = parts_[i];
+    for (const Part& part : std::span(parts_).first(parts)) {
         begun_.insert(begun_.end(), part.begun.begin(), part.begun.end());
         ended_.insert(ended_.end(), part.ended.begin(), part.ended.end());
-        const std::span<Pair> stay = all.subspan(i * grain, part.staying);
-        if (staying < i * grain)
-            std::copy(stay.begin(), stay.end(), all.begin() + static_cast<std::ptrdiff_t>(staying));
-        staying += stay.size();
+        staying += part.staying;
+    }
+    // What stays at the end of the list fills the gaps at its front.
+    std::size_t last = parts, rest = 0;  // `rest` pairs of part `last` are left
+    for (std::size_t i = 0; i < parts; ++i) {
+        std::size_t gap = i * grain + parts_[i].staying;
+        const std::size_t gap_end = std::min((i + 1) * grain, staying);
+        while (gap < gap_end) {
+            if (rest == 0) rest = parts_[--last].staying;
+            const std::size_t count = std::min(rest, gap_end - gap);
+            rest -= count;
+            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(last * grain + rest), count,
+                        all.begin() + static_cast<std::ptrdiff_t>(gap));
+            gap += count;
+        }
     }
     return staying;
 }
