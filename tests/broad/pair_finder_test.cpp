@@ -106,6 +106,41 @@ TEST_P(EveryStructure, WakesASleeperWhoseBoxChanges) {
     EXPECT_EQ(finder.population(2), Population::Awake) << "it has not come to rest";
 }
 
+TEST_P(EveryStructure, TakesBoxesFromWhoKnowsWhichOnesChange) {
+    Random random(11);
+    const auto draw = [&] {
+        return random.below(9) == 0 ? Aabb{}
+                                    : conformance::box_around(conformance::point_in(random, 0, 8), {0.5f, 0.5f, 0.5f});
+    };
+    std::vector<Aabb> boxes;
+    std::vector<Population> populations;
+    for (std::size_t i = 0; i < 200; ++i) {
+        boxes.push_back(draw());
+        populations.push_back(static_cast<Population>(random.below(3)));
+    }
+    PairFinder told(*AnyStructure::named(GetParam()));
+    finder.build(*one, boxes, populations);
+    told.build(*one, boxes, populations);
+    for (int frame = 0; frame < 12; ++frame) {
+        std::vector<Proxy> changed;
+        for (Proxy p = 0; p < boxes.size(); ++p) {
+            if (random.below(4) != 0) continue;
+            const Aabb box = draw();
+            if (box == boxes[p]) continue;
+            boxes[p] = told.writable_boxes()[p] = box;
+            changed.push_back(p);
+        }
+        finder.update(*one, boxes);
+        told.update_changed(*one, changed);
+        ASSERT_EQ(told.broken_invariant(), "") << frame;
+        ASSERT_EQ(pairs_of(told, *one), pairs_of(finder, *one)) << frame;
+        for (Proxy p = 0; p < boxes.size(); ++p) ASSERT_EQ(told.population(p), finder.population(p)) << frame;
+    }
+    told.update_changed(*one, std::vector<Proxy>{3});  // counts as changed, whatever it is
+    EXPECT_NE(told.population(3), Population::Asleep);
+    EXPECT_EQ(told.broken_invariant(), "");
+}
+
 TEST_P(EveryStructure, IsBuiltAnewAndMayBeEmpty) {
     finder.build(*one, {}, {});
     finder.update(*one, {});

@@ -21,12 +21,12 @@ Pairs sorted(std::span<const Pair> pairs) {
     return out;
 }
 
-/// Every pair that overlaps, but those of two static boxes, by trying all.
+/// Every pair that overlaps, but those of two static boxes and of absent ones, by trying all.
 Pairs tried(std::span<const Aabb> boxes, std::span<const Population> populations) {
     Pairs out;
     for (broad::Proxy p = 0; p < boxes.size(); ++p)
         for (broad::Proxy q = p + 1; q < boxes.size(); ++q)
-            if (overlaps(boxes[p], boxes[q]) &&
+            if (overlaps(boxes[p], boxes[q]) && boxes[p] != Aabb{} && boxes[q] != Aabb{} &&
                 (populations[p] != Population::Static || populations[q] != Population::Static))
                 out.push_back({p, q});
     return out;
@@ -53,6 +53,7 @@ Aabb odd_box(Random& random) {
 
 struct Life {
     bool odd = false;
+    bool goes = false;  // boxes go, and come again
     int threads = 1;
     std::string structure = "row_grid";
     std::size_t boxes = 60;
@@ -67,6 +68,7 @@ void expect_told_right(const Life& life, std::uint64_t seed) {
     for (std::size_t i = 0; i < life.boxes; ++i) {
         boxes.push_back(life.odd ? odd_box(random) : box_at(random, 2));
         populations.push_back(static_cast<Population>(random.below(3)));
+        if (life.goes && random.below(8) == 0) boxes.back() = {};
     }
     const auto tasks = make_thread_runner(life.threads);
     PairTracker tracker(*AnyStructure::named(life.structure));
@@ -81,9 +83,11 @@ void expect_told_right(const Life& life, std::uint64_t seed) {
                                : populations[i] == Population::Asleep ? random.below(50) == 0
                                                                       : static_moves && random.below(20) == 0;
             if (!moves) continue;
-            if (life.odd && random.below(3) == 0) {
+            if (life.goes && random.below(8) == 0) {
+                boxes[i] = {};
+            } else if (life.odd && random.below(3) == 0) {
                 boxes[i] = odd_box(random);
-            } else if (random.below(6) == 0) {
+            } else if (random.below(6) == 0 || boxes[i] == Aabb{}) {
                 boxes[i] = box_at(random, 2);
             } else {
                 const Vec3 way{random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f)};
@@ -115,10 +119,41 @@ TEST(PairTracker, TellsOfEndlessMissingAndInvertedBoxes) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_told_right({.odd = true}, seed);
 }
 
+TEST(PairTracker, TellsOfBoxesThatComeAndGo) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_told_right({.goes = true}, seed);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_told_right({.odd = true, .goes = true}, seed);
+}
+
 TEST(PairTracker, TellsTheSameOnEveryStructureAndOnThreads) {
     broad::for_each_structure([]<broad::Structure S>() {
-        expect_told_right({.odd = true, .threads = 2, .structure = std::string(S::info.name)}, 7);
+        expect_told_right({.odd = true, .goes = true, .threads = 2, .structure = std::string(S::info.name)}, 7);
     });
+}
+
+TEST(PairTracker, EndsThePairOfASleeperThatGoesFromWhatIsEverywhere) {
+    // The box that is not there would overlap an endless one, taken by its numbers.
+    std::vector<Aabb> boxes{Aabb::everything(), {{0, 0, 0}, {1, 1, 1}}};
+    const std::vector<Population> populations{Population::Awake, Population::Asleep};
+    const auto tasks = make_serial_runner();
+    PairTracker tracker;
+    EXPECT_EQ(tracker.build(*tasks, boxes, populations).begun.size(), 1u);
+    boxes[1] = {};
+    EXPECT_EQ(tracker.update(*tasks, boxes).ended.size(), 1u);
+    EXPECT_TRUE(tracker.update(*tasks, boxes).staying.empty());
+    boxes[1] = {{5, 0, 0}, {6, 1, 1}};
+    EXPECT_EQ(tracker.update(*tasks, boxes).begun.size(), 1u);
+}
+
+TEST(PairTracker, WakesASleeperThatShrinksWithinItsPlace) {
+    std::vector<Aabb> boxes{{{0, 0, 0}, {2, 1, 1}}, {{1.5f, 0, 0}, {3, 1, 1}}};
+    const std::vector<Population> populations(2, Population::Asleep);
+    const auto tasks = make_serial_runner();
+    PairTracker tracker;
+    EXPECT_EQ(tracker.build(*tasks, boxes, populations).begun.size(), 1u);
+    boxes[0].hi.x = 1;
+    EXPECT_EQ(tracker.update(*tasks, boxes).ended.size(), 1u);
+    EXPECT_EQ(tracker.finder().population(0), Population::Awake);
+    EXPECT_TRUE(tracker.update(*tasks, boxes).ended.empty());
 }
 
 TEST(PairTracker, SharesManyPairsAmongThreads) {
@@ -141,6 +176,35 @@ TEST(PairTracker, SharesManyPairsAmongThreads) {
             EXPECT_EQ(staying, before) << "in another order on " << threads << " threads";
         }
         before = staying;
+    }
+}
+
+TEST(PairTracker, TellsManyPairsOfWhichShareAfterShareEnds) {
+    // Whole shares of the found pairs stay, or none of them does; each frame another part of the boxes is away.
+    const std::vector<Population> populations(500, Population::Awake);
+    const std::vector<Aabb> together(populations.size(), Aabb{{0, 0, 0}, {1, 1, 1}});
+    for (const std::size_t away : {1u, 250u, 499u, 500u}) {
+        std::vector<Aabb> apart = together;
+        for (std::size_t i = 0; i < away; ++i) apart[i].lo.x = apart[i].hi.x = 10 + static_cast<float>(i);
+        PairSet judge;
+        Pairs all = tried(together, populations), left = tried(apart, populations);
+        judge.update(all);
+        const PairChanges right = judge.update(left);
+        Pairs in_order;
+        for (const int threads : {1, 2, 3}) {
+            const auto tasks = make_thread_runner(threads);
+            PairTracker tracker;
+            tracker.build(*tasks, together, populations);
+            const PairChanges told = tracker.update(*tasks, apart);
+            ASSERT_EQ(sorted(told.staying), sorted(right.staying)) << away << " away, " << threads << " threads";
+            ASSERT_EQ(sorted(told.ended), sorted(right.ended)) << away << " away, " << threads << " threads";
+            ASSERT_TRUE(told.begun.empty());
+            const Pairs staying(told.staying.begin(), told.staying.end());
+            if (threads == 3) {
+                ASSERT_EQ(staying, in_order) << "in another order on three threads";
+            }
+            in_order = staying;
+        }
     }
 }
 
