@@ -179,15 +179,22 @@ TEST(PairTracker, SharesManyPairsAmongThreads) {
     }
 }
 
-TEST(PairTracker, TellsManyPairsOfWhichShareAfterShareEnds) {
-    // Whole shares of the found pairs stay, or none of them does; each frame another part of the boxes is away.
+TEST(PairTracker, FillsTheGapsOfWhatEndsAmongManyPairs) {
+    // Boxes shrink to one side or the other of what they all span, so that pairs end here and there in the list, or in
+    // long rows; or each to a side of its own, and none stays.
     const std::vector<Population> populations(500, Population::Awake);
     const std::vector<Aabb> together(populations.size(), Aabb{{0, 0, 0}, {1, 1, 1}});
-    for (const std::size_t away : {1u, 250u, 499u, 500u}) {
+    Random random(3);
+    for (int kind = 0; kind < 4; ++kind) {
         std::vector<Aabb> apart = together;
-        for (std::size_t i = 0; i < away; ++i) apart[i].lo.x = apart[i].hi.x = 10 + static_cast<float>(i);
+        for (std::size_t i = 0; i < apart.size(); ++i) {
+            const bool left = kind == 0 ? random.below(2) == 0 : kind == 1 ? random.below(50) == 0 : i < 200;
+            apart[i].lo.x = left ? 0 : 0.6f;
+            apart[i].hi.x = left ? 0.4f : 1;
+            if (kind == 3) apart[i].lo.x = apart[i].hi.x = static_cast<float>(i) / 512;
+        }
         PairSet judge;
-        Pairs all = tried(together, populations), left = tried(apart, populations);
+        const Pairs all = tried(together, populations), left = tried(apart, populations);
         judge.update(all);
         const PairChanges right = judge.update(left);
         Pairs in_order;
@@ -196,8 +203,8 @@ TEST(PairTracker, TellsManyPairsOfWhichShareAfterShareEnds) {
             PairTracker tracker;
             tracker.build(*tasks, together, populations);
             const PairChanges told = tracker.update(*tasks, apart);
-            ASSERT_EQ(sorted(told.staying), sorted(right.staying)) << away << " away, " << threads << " threads";
-            ASSERT_EQ(sorted(told.ended), sorted(right.ended)) << away << " away, " << threads << " threads";
+            ASSERT_EQ(sorted(told.staying), sorted(right.staying)) << "kind " << kind << ", " << threads << " threads";
+            ASSERT_EQ(sorted(told.ended), sorted(right.ended)) << "kind " << kind << ", " << threads << " threads";
             ASSERT_TRUE(told.begun.empty());
             const Pairs staying(told.staying.begin(), told.staying.end());
             if (threads == 3) {
