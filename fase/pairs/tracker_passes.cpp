@@ -151,7 +151,8 @@ HWY_INLINE void ask(std::span<const LastPlaces> places, std::span<const broad::P
                     std::size_t end, Bits& bits) {
     const LastPlaces* const of = places.data();
     const broad::Pair* const pair = pairs.data();
-    // Places that are in none of the core's own caches are asked for as early as memory is slow; measured.
+    // Places that are in none of the core's own caches are asked for as early as memory is slow; measured. (In a
+    // function of its own that does nothing else GCC 12 takes the fetching for nothing.)
     constexpr std::size_t cached_bytes = std::size_t{1} << 20, ahead = 128;
     std::size_t i = begin;
     if (places.size_bytes() > cached_bytes) {
@@ -173,14 +174,13 @@ struct Ends {
     broad::Pair *staying, *begun, *ended;
 };
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_AVX2
-#define FASE_SORTS_BY_VECTORS 1
+#if HWY_TARGET <= HWY_AVX2
 using Words = hn::CappedTag<std::uint64_t, 8>;  // a lane is a pair
 static_assert(sizeof(broad::Pair) == sizeof(std::uint64_t));
 
 /// The marked lanes moved to the front. (hn::Compress of Highway 1.0 copies its table to the stack at each call.)
 HWY_INLINE hn::Vec<Words> front(hn::Vec<Words> all, unsigned marks) {
-#if HWY_TARGET == HWY_AVX2
+#if HWY_TARGET > HWY_AVX3
     alignas(32) static constexpr auto lanes = front_of_four();
     const hn::Repartition<std::uint32_t, Words> halves;
     const auto order = hn::IndicesFromVec(halves, hn::Load(halves, lanes[marks].data()));
@@ -189,15 +189,13 @@ HWY_INLINE hn::Vec<Words> front(hn::Vec<Words> all, unsigned marks) {
     return {_mm512_maskz_compress_epi64(static_cast<__mmask8>(marks), all.raw)};
 #endif
 }
-#else
-#define FASE_SORTS_BY_VECTORS 0
 #endif
 
 /// Puts the pairs at `in` to the ends of the lists that their bits name.
 HWY_INLINE void sort_out(const broad::Pair* in, const Bits& bits, std::size_t count, Ends& ends) {
     Ends to = ends;
     std::size_t i = 0;
-#if FASE_SORTS_BY_VECTORS
+#if HWY_TARGET <= HWY_AVX2
     const Words d;
     const hn::Rebind<std::uint32_t, Words> d_bits;
     const hn::Repartition<std::uint8_t, Words> bytes;
@@ -228,7 +226,6 @@ HWY_INLINE void sort_out(const broad::Pair* in, const Bits& bits, std::size_t co
     }
     ends = to;
 }
-#undef FASE_SORTS_BY_VECTORS
 
 /// By portions, without a branch that depends on boxes: what all pairs of a portion are, then each to its list.
 std::size_t tell(std::span<const LastPlaces> places, std::span<broad::Pair> pairs, std::vector<broad::Pair>& begun,
