@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fase/broad/row_grid_set.hpp"
+#include "fase/broad/stats.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -24,7 +25,8 @@ public:
     void find(TaskRunner& tasks, std::vector<Pair>& out) const;
 
     [[nodiscard]] std::size_t size() const { return sorted_.size(); }
-    [[nodiscard]] std::size_t bytes() const { return sizeof(*this) - sizeof sorted_ + sorted_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const { return sizeof *this + sorted_.bytes(); }
+    [[nodiscard]] StructureStats stats() const;
 
 private:
     RowGridSettings settings_;

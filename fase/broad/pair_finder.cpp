@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "fase/core/check.hpp"
 #include "fase/core/collect.hpp"
@@ -72,7 +73,9 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     }
     if (automatic_) suit_all(true);
     updates_ = 0;
-    sorts_frame_ = structures_lag_ = false;
+    in_frame_ = false;
+    not_before_ = 0;
+    (void)most_moved(boxes_);
     resting_.clear();
     std::vector<Pair> found;
     asleep_.find_pairs(tasks, found);
@@ -82,8 +85,9 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
 
 void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
     FASE_ASSERT(boxes.size() >= populations_.size());
-    sorts_frame_ = sort_frame(tasks, boxes);
-    if (sorts_frame_) return;
+    not_before_ -= not_before_ > 0 ? 1 : 0;
+    if (most_moved(boxes) && boxes.size() == boxes_.size() && sort_frame(tasks, boxes)) return;
+    leave_frame();
     absent_count_ += boxes.size() - populations_.size();
     boxes_.resize(boxes.size());
     populations_.resize(boxes.size(), Population::Absent);
@@ -92,23 +96,14 @@ void PairFinder::update(TaskRunner& tasks, std::span<const Aabb> boxes) {
 }
 
 void PairFinder::update_changed(TaskRunner& tasks, std::span<const Proxy> changed) {
-    sorts_frame_ = 2 * changed.size() > boxes_.size() && may_sort_frame() && frame_.sort(tasks, boxes_);
-    if (sorts_frame_) {
-        structures_lag_ = true;
-    } else {
-        take_over(tasks, changed);
-    }
+    not_before_ -= not_before_ > 0 ? 1 : 0;
+    if (2 * changed.size() > boxes_.size() && sort_frame(tasks, boxes_)) return;
+    leave_frame();
+    take_over(tasks, changed);
 }
 
 /// What changed in boxes_ reaches the structures.
 void PairFinder::take_over(TaskRunner& tasks, std::span<const Proxy> changed) {
-    if (structures_lag_) {  // all was awake then, and is where it was
-        std::vector<Proxy> all(boxes_.size());
-        std::iota(all.begin(), all.end(), Proxy{0});
-        all.resize(awake_.size());
-        awake_.move(tasks, all, boxes_);
-        structures_lag_ = false;
-    }
     if (awake_.size() == boxes_.size() &&
         std::none_of(changed.begin(), changed.end(), [&](Proxy p) { return is_absent(boxes_[p]); })) {
         awake_.move(tasks, changed, boxes_);
@@ -121,22 +116,37 @@ void PairFinder::take_over(TaskRunner& tasks, std::span<const Proxy> changed) {
     keep_static_pairs();
 }
 
-bool PairFinder::may_sort_frame() const {
-    constexpr std::size_t least = 1024;
-    return boxes_.size() >= least && awake_.size() == boxes_.size() && awake_.info().name == RowGrid::info.name;
+/// Since the last call, by a look at some of them.
+bool PairFinder::most_moved(std::span<const Aabb> boxes) {
+    std::size_t moved = 0;
+    for (std::size_t k = 0; k < looked_at_.size() && !boxes.empty(); ++k) {
+        const Aabb now = boxes[k * boxes.size() / looked_at_.size()];
+        moved += std::exchange(looked_at_[k], now) == now ? 0 : 1;
+    }
+    return moved > looked_at_.size() / 2;
 }
 
 /// When nothing rests, what a frame has in common with the one before need not be known: its boxes are sorted as they
-/// are handed over. False when something rests, comes or goes, or few boxes have moved.
+/// are handed over. False when something rests, or one of the boxes can only be kept apart, as one that goes.
 bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
-    constexpr std::size_t looked_at = 64;
-    if (boxes.size() != boxes_.size() || !may_sort_frame()) return false;
-    std::size_t moved = 0;
-    for (std::size_t k = 0; k < looked_at; ++k) {
-        const std::size_t i = k * (boxes.size() / looked_at);
-        moved += boxes[i] == boxes_[i] ? 0 : 1;
-    }
-    return moved > looked_at / 2 && frame_.sort(tasks, boxes);
+    constexpr std::size_t least = 1024;
+    const bool all_awake = not_before_ == 0 && awake() == boxes_.size() && awake_.info().name == RowGrid::info.name;
+    if (boxes.size() < least || !all_awake || !frame_.sort(tasks, boxes)) return false;
+    if (!in_frame_) awake_.clear();
+    in_frame_ = true;
+    return true;
+}
+
+/// What is awake goes back into a structure, where it was known last.
+void PairFinder::leave_frame() {
+    if (!in_frame_) return;
+    constexpr std::uint32_t rest = 64;  // updates: to come and go in turns would be slower than to stay
+    not_before_ = rest;
+    in_frame_ = false;
+    frame_ = FramePairs();
+    std::vector<Proxy> all(boxes_.size());
+    std::iota(all.begin(), all.end(), Proxy{0});
+    awake_.insert(all, boxes_);
 }
 
 /// Each changed box moves, comes, goes or wakes.
@@ -183,7 +193,7 @@ SuitedStructure PairFinder::chosen(Population population) const {
     const AnyStructure& structure = structure_of(*this, population);
     const std::string_view name = structure.info().name;
     if (!automatic_) return {name, {}};
-    return {name, suited_structure({structure.size(), 1}, name).reason};
+    return {name, suited_structure({population == Population::Awake ? awake() : structure.size(), 1}, name).reason};
 }
 
 /// The pairs of static boxes that changed, came or went with those that sleep.
@@ -217,7 +227,7 @@ void PairFinder::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
 }
 
 void PairFinder::find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    if (sorts_frame_) return frame_.find(tasks, out);
+    if (in_frame_) return frame_.find(tasks, out);
     awake_.find_pairs(tasks, out);
     awake_.find_pairs_between(tasks, asleep_, out);
     awake_.find_pairs_between(tasks, static_, out);
@@ -231,6 +241,12 @@ std::string PairFinder::broken_invariant() const {
         const AnyStructure& structure = structure_of(*this, population);
         const auto here = std::count(populations_.begin(), populations_.end(), population);
         all += structure.size();
+        if (in_frame_ && population == Population::Awake) {
+            if (structure.size() != 0 || frame_.size() != static_cast<std::size_t>(here))
+                return std::string(name) + "the list has another number of boxes";
+            all += frame_.size();
+            continue;
+        }
         if (structure.size() != static_cast<std::size_t>(here))
             return std::string(name) + "the structure has another number of boxes";
         if (const std::string broken = structure.broken_invariant(); !broken.empty()) return name + broken;

@@ -1,5 +1,6 @@
 #pragma once
 /// All pairs of boxes frame after frame: what stands, what sleeps and what moves, each in a structure of its own.
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,7 +22,8 @@ enum class Population : std::uint8_t {
 /// The pairs of a set of boxes that gets new places frame by frame: all that overlap, but for those of two static ones.
 /// Only what is awake looks for pairs; the pairs of two that rest are kept from build() on. Boxes are known by their
 /// place in the list. One that is empty (Aabb{}) is not there: boxes come and go so, and those that come are awake, if
-/// they are not known to be static. Memory is reused from frame to frame.
+/// they are not known to be static. Where all boxes are awake and most of them move, in a row grid, the lists are
+/// sorted as they are handed over, and no structure is kept. Memory is reused from frame to frame.
 class PairFinder {
 public:
     /// @param kind an empty structure: the three populations stand in copies of it
@@ -53,11 +55,13 @@ public:
     [[nodiscard]] SuitedStructure chosen(Population population) const;
     [[nodiscard]] Population population(Proxy p) const { return populations_[p]; }
     /// How many boxes are awake now.
-    [[nodiscard]] std::size_t awake() const { return awake_.size(); }
+    [[nodiscard]] std::size_t awake() const { return in_frame_ ? boxes_.size() : awake_.size(); }
     /// Pairs of two that rest.
     [[nodiscard]] std::span<const Pair> resting_pairs() const { return resting_.pairs(); }
     /// Of the three structures together.
-    [[nodiscard]] StructureStats stats() const { return awake_.stats() + asleep_.stats() + static_.stats(); }
+    [[nodiscard]] StructureStats stats() const {
+        return (in_frame_ ? frame_.stats() : awake_.stats()) + asleep_.stats() + static_.stats();
+    }
     /// "" when all is well; else what is not.
     [[nodiscard]] std::string broken_invariant() const;
 
@@ -70,10 +74,11 @@ private:
     KeptPairs resting_;
     bool automatic_ = false;
     std::uint32_t updates_ = 0;
-    FramePairs frame_;             // of the last update, when all was awake and stood in a row grid:
-    bool sorts_frame_ = false;     // then the structures know nothing of it, nor does boxes_ unless they are written to
-    bool structures_lag_ = false;  // behind boxes_, which were written to
-    std::vector<Proxy> changed_;   // room for those of one update
+    FramePairs frame_;              // of the last update, when most boxes moved, all awake and for a row grid; then
+    bool in_frame_ = false;         // awake_ is empty, and boxes_ are older, unless they are written to by the caller
+    std::uint32_t not_before_ = 0;  // updates until that may be so again
+    std::array<Aabb, 64> looked_at_{};
+    std::vector<Proxy> changed_;  // room for those of one update
     // The same, sorted out; those that wake both leave and come.
     std::vector<Proxy> moved_, came_, gone_, leaving_, static_moved_, static_came_, static_gone_;
 
@@ -83,8 +88,9 @@ private:
                                                   : self.awake_;
     }
     void suit_all(bool looks_closely);
+    [[nodiscard]] bool most_moved(std::span<const Aabb> boxes);
     [[nodiscard]] bool sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes);
-    [[nodiscard]] bool may_sort_frame() const;
+    void leave_frame();
     void take_over(TaskRunner& tasks, std::span<const Proxy> changed);
     void sort_out(TaskRunner& tasks, std::span<const Proxy> changed);
     void keep_static_pairs();

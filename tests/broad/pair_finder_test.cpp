@@ -86,6 +86,76 @@ TEST_P(EveryStructure, SharesTheWorkOfManyBoxesAmongThreads) {
     EXPECT_TRUE(pairs_of(finder, *one) == expected_pairs(boxes, populations));
 }
 
+/// Frames in which all move, in which few do, boxes that go, come and grow without end, and lists that become longer.
+TEST(PairFinder, FollowsBoxesThatAllMoveAndThenDoNot) {
+    const auto one = make_serial_runner(), three = make_thread_runner(3);
+    for (const bool automatic : {false, true}) {
+        Random random(15);
+        const auto draw = [&] {
+            return conformance::box_around(conformance::point_in(random, 0, 14), {0.4f, 0.5f, 0.6f});
+        };
+        std::vector<Aabb> boxes(1300);
+        for (Aabb& box : boxes) box = draw();
+        std::vector<Population> populations(boxes.size(), Population::Awake);
+        PairFinder finder = automatic ? PairFinder::automatic() : PairFinder();
+        finder.build(*one, boxes, populations);
+        std::size_t frames_without_structure = 0;
+        const auto check = [&](const char* what) {
+            SCOPED_TRACE(what);
+            ASSERT_EQ(finder.broken_invariant(), "");
+            std::vector<Pair> expected = expected_pairs(boxes, populations);
+            std::erase_if(expected, [&](Pair pair) { return boxes[pair.a] == Aabb{} || boxes[pair.b] == Aabb{}; });
+            ASSERT_TRUE(pairs_of(finder, *three) == expected);
+            const auto there = boxes.size() - static_cast<std::size_t>(std::count(boxes.begin(), boxes.end(), Aabb{}));
+            ASSERT_EQ(finder.awake(), there);
+            ASSERT_EQ(finder.stats().boxes, there);
+            frames_without_structure += finder.stats().bytes < 80 * boxes.size() ? 1 : 0;
+        };
+        const auto frame = [&](const char* what, std::uint32_t one_in) {
+            for (Aabb& box : boxes)
+                if (random.below(one_in) == 0 && !(box == Aabb{})) box = draw();
+            finder.update(*three, boxes);
+            check(what);
+        };
+        for (int round = 0; round < 2; ++round) {
+            for (int k = 0; k < 3; ++k) frame("all move", 1);
+            for (int k = 0; k < 3; ++k) frame("few move", 40);
+            for (int k = 0; k < 70; ++k) finder.update(*one, boxes);
+            for (int k = 0; k < 2; ++k) frame("all move again", 1);
+            boxes[7] = Aabb::everything();
+            frame("all move, one to everywhere", 1);
+            boxes[7] = Aabb::everything();
+            finder.update(*one, boxes);
+            check("one is everywhere");
+            for (int k = 0; k < 70; ++k) frame("all move, none is everywhere", k < 68 ? 400 : 1);
+            boxes[9] = Aabb{};
+            frame("all move, one goes", 1);
+            boxes[9] = draw();
+            frame("all move, it comes back", 1);
+            boxes.push_back(draw());
+            populations.push_back(Population::Awake);
+            frame("all move, one more", 1);
+            for (int k = 0; k < 70; ++k) frame("few move for long", k < 68 ? 400 : 1);
+            // By who writes the boxes where they are kept.
+            for (const std::uint32_t one_in : {1u, 1u, 3u, 1u}) {
+                std::vector<Proxy> changed;
+                for (Proxy p = 0; p < boxes.size(); ++p) {
+                    if (random.below(one_in) == 0) {
+                        boxes[p] = draw();
+                        changed.push_back(p);
+                    }
+                }
+                const std::span<Aabb> room = finder.writable_boxes();
+                std::copy(boxes.begin(), boxes.end(), room.begin());
+                finder.update_changed(*three, changed);
+                check("written");
+            }
+            for (int k = 0; k < 66; ++k) finder.update_changed(*one, {});
+        }
+        EXPECT_GT(frames_without_structure, 10u) << "this is what it is about";
+    }
+}
+
 TEST_P(EveryStructure, WakesASleeperWhoseBoxChanges) {
     const auto cube = [](float x) { return Aabb{{x, 0, 0}, {x + 1, 1, 1}}; };
     std::vector<Aabb> boxes{cube(0), cube(0.5f), cube(1), cube(9)};
