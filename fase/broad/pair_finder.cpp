@@ -76,6 +76,8 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     in_frame_ = false;
     not_before_ = 0;
     (void)most_moved(boxes_);
+    // So that the first frame does not have to ask for memory.
+    if (!may_sort_frame(boxes) || !frame_.sort(tasks, boxes)) frame_ = FramePairs();
     resting_.clear();
     std::vector<Pair> found;
     asleep_.find_pairs(tasks, found);
@@ -129,21 +131,24 @@ bool PairFinder::most_moved(std::span<const Aabb> boxes) {
 /// When nothing rests, what a frame has in common with the one before need not be known: its boxes are sorted as they
 /// are handed over. False when something rests, or one of the boxes can only be kept apart, as one that goes.
 bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
-    constexpr std::size_t least = 1024;
-    const bool all_awake = not_before_ == 0 && awake() == boxes_.size() && awake_.info().name == RowGrid::info.name;
-    if (boxes.size() < least || !all_awake || !frame_.sort(tasks, boxes)) return false;
+    if (!may_sort_frame(boxes) || !frame_.sort(tasks, boxes)) return false;
     if (!in_frame_) awake_.clear();
     in_frame_ = true;
     return true;
 }
+bool PairFinder::may_sort_frame(std::span<const Aabb> boxes) const {
+    constexpr std::size_t least = 1024;
+    return not_before_ == 0 && boxes.size() >= least && awake() == boxes.size() &&
+           awake_.info().name == RowGrid::info.name;
+}
 
 /// What is awake goes back into a structure, where it was known last.
 void PairFinder::leave_frame() {
+    if (frame_.size() > 0) frame_ = FramePairs();
     if (!in_frame_) return;
     constexpr std::uint32_t rest = 64;  // updates: to come and go in turns would be slower than to stay
     not_before_ = rest;
     in_frame_ = false;
-    frame_ = FramePairs();
     std::vector<Proxy> all(boxes_.size());
     std::iota(all.begin(), all.end(), Proxy{0});
     awake_.insert(all, boxes_);

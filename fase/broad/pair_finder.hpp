@@ -90,6 +90,7 @@ private:
     void suit_all(bool looks_closely);
     [[nodiscard]] bool most_moved(std::span<const Aabb> boxes);
     [[nodiscard]] bool sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes);
+    [[nodiscard]] bool may_sort_frame(std::span<const Aabb> boxes) const;
     void leave_frame();
     void take_over(TaskRunner& tasks, std::span<const Proxy> changed);
     void sort_out(TaskRunner& tasks, std::span<const Proxy> changed);
