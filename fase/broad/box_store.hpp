@@ -71,6 +71,7 @@ public:
         }
         return unknown;
     }
+    /// After move_unseen() of many.
     void note_moved() { changed_ = true; }
     /// Puts boxes where they belong that stand among the odd ones since move_unseen(). O(odd ones).
     void see_odd() {

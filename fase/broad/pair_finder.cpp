@@ -12,6 +12,9 @@
 namespace fase::broad {
 namespace {
 
+/// Updates: to try a list in each, or to come and go in turns, would be slower than to stay with a structure.
+constexpr std::uint32_t frame_rest = 64;
+
 bool is_absent(const Aabb& box) { return box == Aabb{}; }
 
 /// The places at which the boxes are others than before, bit by bit (a NaN that stays is no change), in order; `before`
@@ -77,7 +80,8 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     not_before_ = 0;
     (void)most_moved(boxes_);
     // So that the first frame does not have to ask for memory.
-    if (!may_sort_frame(boxes) || !frame_.sort(tasks, boxes)) frame_ = FramePairs();
+    frame_ = FramePairs();
+    if (may_sort_frame(boxes) && !frame_.sort(tasks, boxes)) not_before_ = frame_rest;
     resting_.clear();
     std::vector<Pair> found;
     asleep_.find_pairs(tasks, found);
@@ -131,7 +135,11 @@ bool PairFinder::most_moved(std::span<const Aabb> boxes) {
 /// When nothing rests, what a frame has in common with the one before need not be known: its boxes are sorted as they
 /// are handed over. False when something rests, or one of the boxes can only be kept apart, as one that goes.
 bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
-    if (!may_sort_frame(boxes) || !frame_.sort(tasks, boxes)) return false;
+    if (!may_sort_frame(boxes)) return false;
+    if (!frame_.sort(tasks, boxes)) {
+        not_before_ = frame_rest;
+        return false;
+    }
     if (!in_frame_) awake_.clear();
     in_frame_ = true;
     return true;
@@ -146,8 +154,7 @@ bool PairFinder::may_sort_frame(std::span<const Aabb> boxes) const {
 void PairFinder::leave_frame() {
     if (frame_.size() > 0) frame_ = FramePairs();
     if (!in_frame_) return;
-    constexpr std::uint32_t rest = 64;  // updates: to come and go in turns would be slower than to stay
-    not_before_ = rest;
+    not_before_ = frame_rest;
     in_frame_ = false;
     std::vector<Proxy> all(boxes_.size());
     std::iota(all.begin(), all.end(), Proxy{0});

@@ -75,8 +75,8 @@ constexpr std::size_t asking_at_once = 16, asking_vectors = asking_at_once / wid
 /// that cannot be foretold.
 struct Batch {
     std::size_t begin, end;
-    std::array<std::array<std::uint32_t, batch_size + width>, 4> records;  // + z; + y; + both
-    std::array<std::size_t, 4> counts{};
+    std::array<std::array<std::uint32_t, batch_size + width>, 3> records;  // + z; + y; + both
+    std::array<std::size_t, 3> counts{};
     /// By record: the first cell that matters in its own row, the one behind the last; and where the row before is
     /// tested too, the first there, or none if there is no such row.
     std::array<std::uint32_t, batch_size + width> from, to, from_z0;
@@ -84,6 +84,10 @@ struct Batch {
     std::array<std::int32_t, batch_size + width> behind;
     std::array<std::int32_t, batch_size / width + asking_vectors> most_behind;
 };
+
+/// Where the records that reach so stand in a batch.
+template <bool reaches_y, bool reaches_z>
+constexpr std::size_t kind_of = (reaches_y ? 2 : 0) + (reaches_z ? 1 : 0) - std::size_t{1};
 
 /// Looks up the cells that matter to each record of a batch, and puts it to those of its kind.
 inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c, Batch& batch) {
@@ -134,9 +138,9 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
             hn::StoreU(front(record, bits), dw, batch.records[kind].data() + batch.counts[kind]);
             batch.counts[kind] += static_cast<std::size_t>(std::popcount(bits));
         };
-        put(1, hn::And(valid, hn::AndNot(reaches_y, reaches_z)));
-        put(2, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
-        put(3, hn::And(valid, hn::And(reaches_y, reaches_z)));
+        put(0, hn::And(valid, hn::AndNot(reaches_y, reaches_z)));
+        put(1, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
+        put(2, hn::And(valid, hn::And(reaches_y, reaches_z)));
     }
     const std::size_t done = (batch.end - batch.begin + width - 1) / width;
     for (std::size_t k = 0; k < asking_vectors; ++k) batch.most_behind[done + k] = 0;
@@ -206,7 +210,7 @@ HWY_NOINLINE void test_long(const Neighbours& rows, const Columns& columns, cons
     const Columns c = columns;  // of its own: nothing that is written can be it
     Writer out(block);
     for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t i = batch.records[(reaches_y ? 2 : 0) + (reaches_z ? 1 : 0)][k];
+        const std::uint32_t i = batch.records[kind_of<reaches_y, reaches_z>][k];
         const Ranges<reaches_y, reaches_z> ranges(rows, batch, i);
         const auto asker = [&] { return Asker(c, i); };
         if constexpr (reaches_z) test_range<Side::Unknown, Side::Later>(asker, c, ranges.z1.begin, ranges.z1.end, out);
@@ -222,7 +226,7 @@ HWY_NOINLINE void test_long(const Neighbours& rows, const Columns& columns, cons
 /// Tests the boxes of a kind and returns how many of them have a long range: those come to the front of its list.
 template <bool reaches_y, bool reaches_z>
 HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batch& batch, Writer& out) {
-    constexpr std::size_t kind = (reaches_y ? 2 : 0) + (reaches_z ? 1 : 0);
+    constexpr std::size_t kind = kind_of<reaches_y, reaches_z>;
     std::uint32_t* const records = batch.records[kind].data();
     const bool has_z0 = rows.has_z0;
     std::size_t with_long = 0;

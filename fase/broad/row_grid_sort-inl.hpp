@@ -1,12 +1,14 @@
 /// Sorting boxes into cells, for one SIMD target. Included inside its namespace by row_grid_kernels.cpp, hence no
 /// #pragma once and no includes.
 
+/// Which counter of the table counts the boxes of its cell, in a level.
 HWY_INLINE std::uint32_t counter_of(const Aabb& box, const RowFit& fit, std::size_t level_index) {
     const RowLevel& level = fit.levels[level_index];
     return level.table + 1 + level.cell(0, box.lo.x) * level.stride[0] + level.cell(1, box.lo.y) * level.stride[1] +
            level.cell(2, box.lo.z) * level.stride[2];
 }
 
+/// The finest level that is as coarse as the box.
 inline std::size_t level_for(const Aabb& box, const RowFit& fit) {
     const Vec3 e = extent(box);
     const float side = std::max(e.x, std::max(e.y, e.z));
@@ -17,9 +19,11 @@ inline std::size_t level_for(const Aabb& box, const RowFit& fit) {
 
 /// The proxy of a box of a list.
 HWY_INLINE Proxy proxy_of(const Move& m, std::uint32_t) { return m.proxy; }
+/// The same where boxes are known by their place.
 HWY_INLINE Proxy proxy_of(const Aabb&, std::uint32_t place) { return place; }
 
 #if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
+/// See row_grid::count_cells.
 template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     const RowLevel& low = fit.levels[0];
@@ -42,6 +46,7 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* key
     return found;
 }
 
+/// See row_grid::gather_boxes.
 template <class Row>
 std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t begin, std::size_t end,
                                      const std::array<float*, 6>& columns, Proxy* order) {
@@ -102,6 +107,7 @@ template <class Row> struct Turned {
     }
 };
 
+/// See row_grid::count_cells.
 template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
                        std::uint32_t* HWY_RESTRICT table) {
@@ -186,6 +192,7 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
     return found;
 }
 
+/// See row_grid::gather_boxes.
 template <class Row>
 std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t begin, std::size_t end,
                                      const std::array<float*, 6>& columns, Proxy* HWY_RESTRICT order) {
@@ -234,6 +241,7 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
 }
 #endif
 
+/// The same for each kind of list, by names that dispatch knows.
 Counted count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
 }

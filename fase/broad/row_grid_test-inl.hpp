@@ -166,31 +166,10 @@ public:
         if (HWY_UNLIKELY(at_ + wanted > limit_)) at_ = block_.flush(at_);
     }
     /// The marked lanes of two vectors of proxies.
-    HWY_INLINE void add(Words p, Words q, std::uint32_t bits) {
-        const auto pairs = static_cast<std::size_t>(std::popcount(bits));
-        store(front(p, bits), front(q, bits), pairs, reinterpret_cast<std::uint32_t*>(at_));
-        at_ += pairs;
-    }
+    HWY_INLINE void add(Words p, Words q, std::uint32_t bits) { add_front(front(p, bits), front(q, bits), bits); }
     /// The marked ones of some records, all with one proxy.
     HWY_INLINE void add(Words asker, const Proxy* others, std::uint32_t bits) {
-        const Words found = front(hn::LoadU(WordTag(), others), bits);
-        const auto pairs = static_cast<std::size_t>(std::popcount(bits));
-        auto* const to = reinterpret_cast<std::uint32_t*>(at_);
-#if HWY_TARGET != HWY_SCALAR
-        if constexpr (width == 16) {
-            const WordTag d;
-            const hn::Half<WordTag> half;
-            const hn::Repartition<std::uint64_t, WordTag> wide;
-            const auto above = hn::ShiftLeft<32>(hn::BitCast(wide, asker));  // the same in every asking
-            hn::StoreU(larger_above(hn::Or(hn::PromoteTo(wide, hn::LowerHalf(half, found)), above)), d, to);
-            if (HWY_UNLIKELY(pairs > width / 2))
-                hn::StoreU(larger_above(hn::Or(hn::PromoteTo(wide, hn::UpperHalf(half, found)), above)), d, to + width);
-            at_ += pairs;
-            return;
-        }
-#endif
-        store(found, asker, pairs, to);
-        at_ += pairs;
+        add_front(front(hn::LoadU(WordTag(), others), bits), asker, bits);
     }
 
 private:
@@ -198,6 +177,12 @@ private:
     Pair* at_;
     Pair* limit_;
 
+    /// As many lanes as bits are set.
+    HWY_INLINE void add_front(Words p, Words q, std::uint32_t bits) {
+        const auto pairs = static_cast<std::size_t>(std::popcount(bits));
+        store(p, q, pairs, reinterpret_cast<std::uint32_t*>(at_));
+        at_ += pairs;
+    }
     /// Lane by lane: smaller, larger, smaller, larger … A full vector more than `pairs` asks for may be written.
 #if HWY_TARGET == HWY_SCALAR
     static HWY_INLINE void store(Words p, Words q, std::size_t, std::uint32_t* to) {
@@ -227,9 +212,7 @@ private:
     /// Of both words in one order and in the other, the larger has the larger one above.
     template <class V> static HWY_INLINE Words ordered(V p, V q) {
         const hn::Repartition<std::uint64_t, WordTag> d;
-        return larger_above(hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q))));
-    }
-    template <class V> static HWY_INLINE Words larger_above(V one) {
+        const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q)));
         return hn::BitCast(WordTag(), hn::Max(one, hn::RotateRight<32>(one)));
     }
 #endif
