@@ -9,8 +9,10 @@ namespace fase::broad {
 void FramePairs::find(TaskRunner& tasks, std::vector<Pair>& out) const {
     using namespace row_grid;
     const RowView set = sorted_.view();
-    find_in_chunks(&tasks, chunks_of(set.count), out, [&](std::size_t chunk, PairBlock& block) {
-        find_own_pairs(set, chunk * chunk_records, std::min(set.count, (chunk + 1) * chunk_records), block);
+    const RowCuts cuts(set.levels);
+    find_in_chunks(&tasks, cuts.chunks(), out, [&](std::size_t chunk, PairBlock& block) {
+        const RecordSpan records = cuts[chunk];
+        find_own_pairs(set, records.begin, records.end, block);
     });
 }
 

@@ -13,7 +13,6 @@ using row_grid::PairBlock;
 
 /// What is searched: each set of records within itself, and the fewer against the others.
 struct Chunks {
-    static constexpr std::size_t grain = row_grid::chunk_records;
     const RowPart &moving, &resting;
     bool moving_ask;  // the fewer ask the others
     std::size_t first_resting, first_asking, count;
@@ -41,7 +40,7 @@ struct Chunks {
 private:
     [[nodiscard]] const RowPart& few() const { return moving_ask ? moving : resting; }
     [[nodiscard]] const RowPart& many() const { return moving_ask ? resting : moving; }
-    static std::size_t parts(const RowSet& set) { return row_grid::chunks_of(set.size()); }
+    static std::size_t parts(const RowSet& set) { return row_grid::RowCuts(set.levels()).chunks(); }
     static std::size_t parts(const RowPart& part) {
         std::size_t sum = 0;
         for (std::size_t k = 0; k < part.sets(); ++k) sum += parts(part.set(k));
@@ -50,7 +49,8 @@ private:
     template <class F> static void with_records(const RowPart& part, std::size_t chunk, F&& f) {
         std::size_t k = 0;
         for (; chunk >= parts(part.set(k)); ++k) chunk -= parts(part.set(k));
-        f(k, chunk * grain, std::min(part.set(k).size(), (chunk + 1) * grain));
+        const RecordSpan records = row_grid::RowCuts(part.set(k).levels())[chunk];
+        f(k, records.begin, records.end);
     }
     static void find_own(const RowPart& part, std::size_t chunk, PairBlock& out) {
         with_records(part, chunk, [&](std::size_t k, std::size_t begin, std::size_t end) {

@@ -4,72 +4,48 @@
 #include <span>
 #include <vector>
 
+#include "fase/broad/parted_pairs.hpp"
 #include "fase/broad/row_grid_kernels.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad::row_grid {
 
-/// Records that are searched in one go. Cuts go by count, so that the order of the pairs does not depend on the
+/// How the records of a set are cut into chunks that are searched in one go: many of the finest level, fewer of each
+/// coarser one, whose boxes meet more others. Cuts go by count, so that the order of the pairs does not depend on the
 /// threads.
-inline constexpr std::size_t chunk_records = 4096;
-
-[[nodiscard]] inline std::size_t chunks_of(std::size_t records) {
-    return (records + chunk_records - 1) / chunk_records;
-}
-
-/// What chunks have found, kept from search to search: memory that is given back and asked for in each frame costs more
-/// than the search. A thread that waits for tasks may begin another search meanwhile; that one has lists of its own.
-class ChunkLists {
+class RowCuts {
 public:
-    explicit ChunkLists(std::size_t count) : is_first_(!kept().in_use) {
-        kept().in_use = true;
-        if (lists().size() < count) lists().resize(count);
-        for (std::vector<Pair>& list : lists()) list.clear();
+    explicit RowCuts(std::span<const RowLevel> levels) : levels_(levels) {}
+
+    [[nodiscard]] std::size_t chunks() const {
+        std::size_t sum = 0;
+        for (std::size_t k = 0; k < levels_.size(); ++k) sum += chunks_of(k);
+        return sum;
     }
-    ChunkLists(const ChunkLists&) = delete;
-    ChunkLists& operator=(const ChunkLists&) = delete;
-    ~ChunkLists() {
-        if (is_first_) kept().in_use = false;
+    /// The records of a chunk.
+    [[nodiscard]] RecordSpan operator[](std::size_t chunk) const {
+        std::size_t k = 0;
+        for (; chunk >= chunks_of(k); ++k) chunk -= chunks_of(k);
+        const RowLevel& level = levels_[k];
+        const std::size_t begin = chunk * length(k), end = std::min<std::size_t>(level.count, begin + length(k));
+        return {static_cast<std::uint32_t>(level.first + begin), static_cast<std::uint32_t>(level.first + end)};
     }
-    [[nodiscard]] std::vector<std::vector<Pair>>& lists() { return is_first_ ? kept().lists : own_; }
 
 private:
-    struct Kept {
-        std::vector<std::vector<Pair>> lists;
-        bool in_use = false;
-    };
-    bool is_first_;
-    std::vector<std::vector<Pair>> own_;
+    std::span<const RowLevel> levels_;
 
-    static Kept& kept() {
-        thread_local Kept mine;
-        return mine;
+    static std::size_t length(std::size_t level) { return level == 0 ? 4096 : level == 1 ? 256 : 16; }
+    [[nodiscard]] std::size_t chunks_of(std::size_t level) const {
+        return (levels_[level].count + length(level) - 1) / length(level);
     }
 };
 
-/// Appends what find(chunk, block) puts into its block, in the order of the chunks.
+/// As find_in_parts(), for searches that write to a block.
 template <class Find>
 void find_in_chunks(TaskRunner* tasks, std::size_t count, std::vector<Pair>& out, const Find& find) {
-    if (tasks == nullptr || tasks->threads() == 1 || count < 2) {
-        PairBlock block(out);
-        for (std::size_t k = 0; k < count; ++k) find(k, block);
-        return;
-    }
-    ChunkLists kept(count);
-    std::vector<std::vector<Pair>>& found = kept.lists();
-    parallel_ranges(*tasks, count, 1, [&](std::size_t k, std::size_t) {
-        PairBlock block(found[k]);
-        find(k, block);
-    });
-    std::vector<std::size_t> places;
-    std::size_t total = out.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        places.push_back(total);
-        total += found[k].size();
-    }
-    out.resize(total);
-    parallel_ranges(*tasks, count, 1, [&](std::size_t k, std::size_t) {
-        std::copy(found[k].begin(), found[k].end(), out.begin() + static_cast<std::ptrdiff_t>(places[k]));
+    find_in_parts(tasks, count, out, [&](std::size_t chunk, std::vector<Pair>& pairs) {
+        PairBlock block(pairs);
+        find(chunk, block);
     });
 }
 

@@ -44,7 +44,7 @@ std::optional<RecordSpan> RowSet::put(const Move& m) {
         hole = nearest_hole(proxies_.data(), begin, place, end);
         if (hole == end) return {};
     } else {
-        std::uint32_t* const cells = table_.data() + (parts_ - 1) * fit_.table + level.table;
+        std::uint32_t* const cells = table_.data() + level.table;
         const std::uint32_t cell_x = level.cell(ax, lo[ax]);
         std::uint32_t cell =
             level.cell(ay, lo[ay]) * level.stride[at(ay)] + level.cell(az, lo[az]) * level.stride[at(az)];

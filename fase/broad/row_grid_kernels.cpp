@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "fase/broad/box_store.hpp"
@@ -36,6 +37,8 @@ namespace fase::broad::row_grid {
 
 HWY_EXPORT(count_moves_wide);
 HWY_EXPORT(count_list_wide);
+HWY_EXPORT(deal_moves_wide);
+HWY_EXPORT(deal_list_wide);
 HWY_EXPORT(gather_moves_wide);
 HWY_EXPORT(gather_list_wide);
 HWY_EXPORT(find_own_pairs_wide);
@@ -46,6 +49,12 @@ Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys,
 }
 Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return HWY_DYNAMIC_DISPATCH(count_list_wide)(boxes, fit, keys, table);
+}
+Counted deal_boxes(std::span<const Move> boxes, Proxy first, const RowFit& fit, Hand& hand) {
+    return HWY_DYNAMIC_DISPATCH(deal_moves_wide)(boxes, first, fit, hand);
+}
+Counted deal_boxes(std::span<const Aabb> boxes, Proxy first, const RowFit& fit, Hand& hand) {
+    return HWY_DYNAMIC_DISPATCH(deal_list_wide)(boxes, first, fit, hand);
 }
 std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,
                                   const std::array<float*, 6>& columns, Proxy* order) {

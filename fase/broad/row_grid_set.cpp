@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fase/broad/row_grid_kernels.hpp"
+#include "fase/broad/row_deal.hpp"
 #include "fase/core/check.hpp"
 
 namespace fase::broad {
@@ -16,15 +16,6 @@ namespace {
 std::uint32_t ordered_bits(float v) {
     const auto bits = std::bit_cast<std::uint32_t>(v + 0.0f);  // one zero, not two
     return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
-}
-
-constexpr std::size_t most_parts = 4;      // each counts in a table of its own
-constexpr std::size_t part_least = 16384;  // boxes of a part
-constexpr std::size_t gather_grain = 8192;
-
-template <class F> void for_ranges(TaskRunner* tasks, std::size_t count, std::size_t grain, const F& body) {
-    if (tasks != nullptr) return parallel_ranges(*tasks, count, grain, body);
-    for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(count, begin + grain));
 }
 
 /// Sorts by bits 11k..11k+10 of a key, keeping the order of equals.
@@ -74,106 +65,108 @@ std::array<std::size_t, 6> RowSet::column_places() const {
 }
 
 template <class Row>
-bool RowSet::build_from(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
+bool RowSet::build_from(std::span<const Row> boxes, const RowGridSettings& settings, RowDeal* deal, TaskRunner* tasks) {
     count_ = boxes.size();
     dead_ = 0;
     rows_.clear();
     make_room();
     const bool other_count = count_ > fitted_count_ + fitted_count_ / 4 || count_ < fitted_count_ - fitted_count_ / 4;
     if (stale_ || other_count || ++age_ >= settings.fit_lasts) fit(boxes, settings);
-    const std::size_t threads = tasks == nullptr ? 1 : static_cast<std::size_t>(tasks->threads());
-    parts_ = std::max<std::size_t>(std::min({threads, most_parts, count_ / part_least}), 1);
-    if (parts_ == 1) tasks = nullptr;
     if (count_ == 0) return true;
-    if (!count(boxes, settings, tasks)) {
-        *this = {};
-        return false;
+    const RecordSpan all{0, static_cast<std::uint32_t>(count_)};
+    RowSlab one{.runs = {&all, 1}};
+    bool deals = false;
+    for (;;) {
+        table_.resize(fit_.table);
+        one.counters_end = fit_.table;
+        deals = deal != nullptr && RowDeal::pays(count_, tasks) && !fit_.levels.front().listed;
+        const row_grid::Counted counted = deals ? deal->deal(boxes, fit_, tasks) : count(boxes, one);
+        if (counted.odd) {
+            *this = {};
+            return false;
+        }
+        if (counted.outside <= count_ / 16 || age_ == 0) break;
+        fit(boxes, settings);
     }
-    sum_counts();
-    place();
-    for (RowLevel& level : fit_.levels) {
-        const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
-        level.first = table()[level.table];
-        level.count = table()[level.table + cells] - level.first;
-        if (level.listed) sort_listed(boxes, level);
-        gather(boxes, level, tasks);
+    const std::size_t levels = fit_.levels.size(), slabs = deals ? deal->slabs().size() : 1;
+    reaches_.assign(slabs * levels, {});
+    const auto reaches = [&](std::size_t slab) { return std::span(reaches_).subspan(slab * levels, levels); };
+    if (deals) {
+        const auto sort_slabs = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                count(deal->boxes(), deal->slabs()[k]);
+                place(deal->boxes(), deal->slabs()[k], reaches(k));
+            }
+        };
+        tasks == nullptr ? sort_slabs(0, slabs) : parallel_ranges(*tasks, slabs, 1, sort_slabs);
+        see_levels(deal->boxes());
+    } else {
+        place(boxes, one, reaches(0));
+        see_levels(boxes);
     }
     if (fit_.levels.back().count > count_ / 16) stale_ = age_ != 0;
     return true;
 }
 
-/// Counts the boxes of each cell, part by part; keys stand where the first column will be. False: one is not ordinary.
+/// Counts the boxes of each cell of a slab; keys stand where the first column will be.
+template <class Row> row_grid::Counted RowSet::count(std::span<const Row> boxes, const RowSlab& slab) {
+    std::fill(table_.begin() + slab.counters, table_.begin() + slab.counters_end, 0);
+    float* keys = columns_.data() + slab.first;
+    row_grid::Counted sum;
+    for (const RecordSpan run : slab.runs) {
+        sum = row_grid::count_cells(boxes.subspan(run.begin, run.end - run.begin), fit_, keys, table_.data());
+        keys += run.end - run.begin;
+    }
+    return sum;
+}
+
+/// Puts the boxes of a slab where they belong, those of a cell in the order in which they came. A cell's counter stands
+/// one place behind the cell: it becomes where its boxes go and, once all are placed, where the next cell begins.
+/// Levels whose rows stand in a list are only begun: there are the numbers of the boxes.
 template <class Row>
-bool RowSet::count(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks) {
-    for (;;) {
-        table_.resize(parts_ * fit_.table);
-        std::array<row_grid::Counted, most_parts> counted;
-        for_ranges(tasks, count_, part_length(), [&](std::size_t begin, std::size_t end) {
-            const std::size_t part = begin / part_length();
-            std::uint32_t* const mine = table_.data() + part * fit_.table;
-            std::fill(mine, mine + fit_.table, 0);
-            const std::span<const Row> some = boxes.subspan(begin, end - begin);
-            counted[part] = row_grid::count_cells(some, fit_, columns_.data() + begin, mine);
-        });
-        std::size_t outside = 0;
-        for (const row_grid::Counted& part : counted) {
-            if (part.odd) return false;
-            outside += part.outside;
-        }
-        if (outside <= count_ / 16 || age_ == 0) return true;
-        fit(boxes, settings);
-    }
-}
-
-/// A cell's counter stands one place behind the cell. It becomes where the boxes of the part go; once all are placed,
-/// where those of the next part begin and, of the last part, where the next cell does.
-void RowSet::sum_counts() {
-    std::uint32_t* const counters = table_.data();
-    const std::size_t length = fit_.table;
-    std::uint32_t before = 0;
-    if (parts_ == 1) {
-        for (std::size_t k = 0; k < length; ++k) before += std::exchange(counters[k], before);
-        return;
-    }
-    for (std::size_t k = 0; k < length; ++k)
-        for (std::size_t at = k; at < parts_ * length; at += length) before += std::exchange(counters[at], before);
-}
-
-/// The numbers of the boxes, in the order of cells; those of a cell in the order in which they came. By one thread: two
-/// would write to the same lines of memory in turns.
-void RowSet::place() {
-    const float* const keys = columns_.data();
+void RowSet::place(std::span<const Row> boxes, const RowSlab& slab, std::span<std::array<float, 3>> reaches) {
+    std::uint32_t* const next = table_.data();
+    std::uint32_t before = slab.first;
+    for (std::uint32_t k = slab.counters; k < slab.counters_end; ++k) before += std::exchange(next[k], before);
+    const float* keys = columns_.data() + slab.first;
     Proxy* const order = proxies_.data();
-    constexpr std::size_t ahead = 16;
-    for (std::size_t part = 0; part < parts_; ++part) {
-        std::uint32_t* const next = table_.data() + part * fit_.table;
-        const auto counter = [=](std::size_t i) { return next + std::bit_cast<std::uint32_t>(keys[i]); };
-        const std::size_t end = std::min(count_, (part + 1) * part_length());
-        std::size_t i = part * part_length();
-        if (count_ >= row_grid::past_caches) {
-            for (; i + 2 * ahead < end; ++i) {
-                __builtin_prefetch(counter(i + 2 * ahead), 1);
-                __builtin_prefetch(order + *counter(i + ahead), 1);
-                order[(*counter(i))++] = static_cast<std::uint32_t>(i);
-            }
-        }
-        for (; i < end; ++i) order[(*counter(i))++] = static_cast<std::uint32_t>(i);
+    for (const RecordSpan run : slab.runs)
+        for (std::uint32_t i = run.begin; i < run.end; ++i) order[next[std::bit_cast<std::uint32_t>(*keys++)]++] = i;
+    std::uint32_t begin = slab.first;
+    for (std::size_t k = 0; k < fit_.levels.size(); ++k) {
+        const RowLevel& level = fit_.levels[k];
+        const std::uint32_t last = level.table + level.cells(0) * level.cells(1) * level.cells(2);
+        if (last < slab.counters || level.table >= slab.counters_end) continue;
+        const std::uint32_t end = next[std::min(last, slab.counters_end - 1)];
+        if (!level.listed) reaches[k] = gather(boxes, begin, end);
+        begin = end;
     }
 }
 
-template <class Row> void RowSet::gather(std::span<const Row> boxes, RowLevel& level, TaskRunner* tasks) {
+template <class Row>
+std::array<float, 3> RowSet::gather(std::span<const Row> boxes, std::uint32_t begin, std::uint32_t end) {
     std::array<float*, 6> columns;
     const std::array<std::size_t, 6> places = column_places();
     for (std::size_t k = 0; k < 6; ++k) columns[k] = columns_.data() + places[k];
-    const std::size_t grain = tasks == nullptr || level.count < part_least ? std::max(level.count, 1u) : gather_grain;
-    reaches_.assign(level.count / grain + 1, {});
-    for_ranges(tasks, level.count, grain, [&](std::size_t begin, std::size_t end) {
-        reaches_[begin / grain] =
-            row_grid::gather_boxes(boxes, level.first + begin, level.first + end, columns, proxies_.data());
-    });
-    level.reach = {};
-    for (const std::array<float, 3>& reach : reaches_)
-        for (std::size_t a = 0; a < 3; ++a) level.reach[a] = std::max(level.reach[a], reach[a]);
+    return row_grid::gather_boxes(boxes, begin, end, columns, proxies_.data());
+}
+
+/// What is known of each level once all boxes are placed; sorts those whose rows stand in a list.
+template <class Row> void RowSet::see_levels(std::span<const Row> boxes) {
+    const std::size_t levels = fit_.levels.size();
+    for (std::size_t k = 0; k < levels; ++k) {
+        RowLevel& level = fit_.levels[k];
+        level.first = table_[level.table];
+        level.count = table_[level.table + level.cells(0) * level.cells(1) * level.cells(2)] - level.first;
+        if (level.listed) {
+            sort_listed(boxes, level);
+            level.reach = gather(boxes, level.first, level.first + level.count);
+            continue;
+        }
+        level.reach = {};
+        for (std::size_t of_slab = k; of_slab < reaches_.size(); of_slab += levels)
+            for (std::size_t a = 0; a < 3; ++a) level.reach[a] = std::max(level.reach[a], reaches_[of_slab][a]);
+    }
 }
 
 /// Orders the level's boxes, of which there are only the numbers yet, by row and lower corner along it.
@@ -210,8 +203,8 @@ template <class Row> void RowSet::sort_listed(std::span<const Row> boxes, RowLev
     rows_.push_back({INT32_MAX, INT32_MAX, level.first + level.count});
 }
 
-template bool RowSet::build_from(std::span<const Move>, const RowGridSettings&, TaskRunner*);
-template bool RowSet::build_from(std::span<const Aabb>, const RowGridSettings&, TaskRunner*);
+template bool RowSet::build_from(std::span<const Move>, const RowGridSettings&, RowDeal*, TaskRunner*);
+template bool RowSet::build_from(std::span<const Aabb>, const RowGridSettings&, RowDeal*, TaskRunner*);
 
 /// Not a number across the rows, of those below zero: as every difference to it is, and so it is apart from all boxes.
 /// Along the row it stays where it is, for rows in order.
@@ -234,8 +227,8 @@ RowView RowSet::view() const {
     view.stride = stride_;
     view.proxies = proxies_.data();
     view.count = count_;
-    view.table = table();
-    view.levels = count_ == 0 ? std::span<const RowLevel>() : std::span<const RowLevel>(fit_.levels);
+    view.table = table_.data();
+    view.levels = levels();
     view.rows = rows_;
     view.axis = fit_.axis;
     return view;
@@ -288,7 +281,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
         next += level.count;
         const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
         for (std::uint32_t cell = 0; cell < cells; ++cell) {
-            const std::uint32_t begin = table()[level.table + cell], end = table()[level.table + cell + 1];
+            const std::uint32_t begin = table_[level.table + cell], end = table_[level.table + cell + 1];
             if (begin > end || end > next) return "the cells of a level are not in order";
             for (std::uint32_t i = begin; i < end; ++i) {
                 if (proxies_[i] == killed) continue;
@@ -300,7 +293,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
                 if (std::string broken = broken_record(level, i); !broken.empty()) return broken;
             }
         }
-        if (table()[level.table + cells] != next) return "a level's cells do not hold all its boxes";
+        if (table_[level.table + cells] != next) return "a level's cells do not hold all its boxes";
         if (!level.listed) continue;
         for (std::uint32_t r = 0; r < level.row_count; ++r) {
             const ListedRow row = rows_[level.first_row + r], after = rows_[level.first_row + r + 1];

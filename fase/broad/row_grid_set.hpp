@@ -129,17 +129,26 @@ struct RecordSpan {
     std::uint32_t begin = 0, end = 0;
 };
 
+class RowDeal;
+struct RowSlab;
+namespace row_grid {
+struct Counted;
+}
+
 /// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
 class RowSet {
 public:
     /// The boxes must be ordinary (see is_ordinary()). When one is not, nothing is stored and the answer is false.
-    /// What is stored does not depend on `tasks`; without, one thread does all.
-    bool build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
-        return build_from(boxes, settings, tasks);
+    /// What is stored does not depend on `deal`, with which many are sorted faster, nor on `tasks`, which take part in
+    /// that.
+    bool build(std::span<const Move> boxes, const RowGridSettings& settings, RowDeal* deal = nullptr,
+               TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, deal, tasks);
     }
     /// The same for a list: the proxies are the places in it.
-    bool build(std::span<const Aabb> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
-        return build_from(boxes, settings, tasks);
+    bool build(std::span<const Aabb> boxes, const RowGridSettings& settings, RowDeal* deal = nullptr,
+               TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, deal, tasks);
     }
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
@@ -161,6 +170,10 @@ public:
         }
         return box;
     }
+    /// None without records.
+    [[nodiscard]] std::span<const RowLevel> levels() const {
+        return count_ == 0 ? std::span<const RowLevel>() : std::span<const RowLevel>(fit_.levels);
+    }
     /// Records, the killed ones too.
     [[nodiscard]] std::size_t size() const { return count_; }
     [[nodiscard]] std::size_t dead() const { return dead_; }
@@ -174,8 +187,7 @@ private:
     std::vector<float> columns_;  // as in RowView
     std::size_t stride_ = 0;
     std::vector<Proxy> proxies_;
-    std::vector<std::uint32_t> table_;  // one behind the other for each part of the boxes; the last is the one to read
-    std::size_t parts_ = 1;
+    std::vector<std::uint32_t> table_;
     std::vector<ListedRow> rows_;
     std::size_t count_ = 0, dead_ = 0;
     std::size_t fitted_count_ = 0;  // boxes when the levels were chosen
@@ -187,21 +199,19 @@ private:
         std::uint32_t x, order;
     };
     std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
-    std::vector<std::array<float, 3>> reaches_;   // scratch of gather
+    std::vector<std::array<float, 3>> reaches_;   // scratch: by slab and level
     RowSample sample_;                            // scratch of fit
 
     template <class Row>
-    bool build_from(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks);
+    bool build_from(std::span<const Row> boxes, const RowGridSettings& settings, RowDeal* deal, TaskRunner* tasks);
     template <class Row> void fit(std::span<const Row> boxes, const RowGridSettings& settings);
     void make_room();
+    template <class Row> row_grid::Counted count(std::span<const Row> boxes, const RowSlab& slab);
     template <class Row>
-    [[nodiscard]] bool count(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks);
-    void sum_counts();
-    void place();
-    template <class Row> void gather(std::span<const Row> boxes, RowLevel& level, TaskRunner* tasks);
-    /// A multiple of 64: count_cells() writes keys by the vector, and must not write over those of another part.
-    [[nodiscard]] std::size_t part_length() const { return ((count_ + parts_ - 1) / parts_ + 63) / 64 * 64; }
-    [[nodiscard]] const std::uint32_t* table() const { return table_.data() + (parts_ - 1) * fit_.table; }
+    void place(std::span<const Row> boxes, const RowSlab& slab, std::span<std::array<float, 3>> reaches);
+    template <class Row>
+    [[nodiscard]] std::array<float, 3> gather(std::span<const Row> boxes, std::uint32_t begin, std::uint32_t end);
+    template <class Row> void see_levels(std::span<const Row> boxes);
     RecordSpan shift(std::uint32_t hole, std::uint32_t place);
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;
     template <class Row> void sort_listed(std::span<const Row> boxes, RowLevel& level);

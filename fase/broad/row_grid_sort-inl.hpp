@@ -23,16 +23,14 @@ HWY_INLINE Proxy proxy_of(const Move& m, std::uint32_t) { return m.proxy; }
 HWY_INLINE Proxy proxy_of(const Aabb&, std::uint32_t place) { return place; }
 
 #if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
-/// See row_grid::count_cells.
-template <class Row>
-Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+/// Calls take(i, counters, count) for boxes i to i + count - 1: which counters are theirs.
+template <class Row, class Take> Counted for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
     const RowLevel& low = fit.levels[0];
     Counted found;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const Aabb& box = box_of(boxes[i]);
-        const std::uint32_t counter = counter_of(box, fit, level_for(box, fit));
-        keys[i] = std::bit_cast<float>(counter);
-        ++table[counter];
+        const auto counter = static_cast<std::int32_t>(counter_of(box, fit, level_for(box, fit)));
+        take(i, &counter, 1);
         bool far = false;
         Vec3 lo = box.lo;
         for (int a = 0; a < 3; ++a) {
@@ -107,10 +105,9 @@ template <class Row> struct Turned {
     }
 };
 
-/// See row_grid::count_cells.
-template <class Row>
-Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
-                       std::uint32_t* HWY_RESTRICT table) {
+/// Calls take(i, counters, count) for boxes i to i + count - 1: which counters are theirs.
+template <class Row, class Take>
+HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
     constexpr std::size_t lanes = Wide::lanes;
     const Wide::Tag d;
     const IntTag di;
@@ -134,9 +131,7 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
     std::array<std::uint32_t, lanes> in_turn;
     for (std::size_t k = 0; k < lanes; ++k) in_turn[k] = static_cast<std::uint32_t>(k);
     Counted found;
-    const bool later = boxes.size() >= past_caches;    // counters are on their way while other boxes are looked at
-    constexpr std::size_t behind = 32, looked_at = 4;  // one vector in so many, for the boxes outside
-    std::size_t counted = 0;
+    constexpr std::size_t looked_at = 4;  // one vector in so many, for the boxes outside
     for (std::size_t i = 0; i < boxes.size(); i += lanes) {
         const std::size_t count = std::min(lanes, boxes.size() - i);
         Turned<Row> turned;
@@ -147,6 +142,10 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
             for (std::size_t k = 0; k < lanes; ++k)
                 order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
             turned.read_copies(boxes.data(), order.data());
+        }
+        if constexpr (std::is_same_v<Row, Move>) {  // which may lie in runs, too short for a processor to foresee
+            const char* const ahead = reinterpret_cast<const char*>(boxes.data() + i) + 2048;
+            for (std::size_t b = 0; b < lanes * sizeof(Row); b += 64) __builtin_prefetch(ahead + b);
         }
         auto counter = first_counter;
         hn::Vec<Wide::Tag> t[3];
@@ -159,7 +158,6 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
         }
         alignas(64) std::array<std::int32_t, lanes> counters;
         hn::StoreU(counter, di, counters.data());
-        hn::StoreU(hn::BitCast(d, counter), d, keys + i);
         const auto side = [&](std::size_t a) { return hn::Sub(turned.hi(a).v, turned.lo(a).v); };
         const auto x = side(0), y = side(1), z = side(2);
         const auto above = hn::Gt(hn::Max(x, hn::Max(y, z)), limit);
@@ -170,15 +168,9 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
                 const Aabb& box = box_of(boxes[i + k]);
                 const std::size_t level = level_for(box, fit);
                 if (level != 0) counters[k] = static_cast<std::int32_t>(counter_of(box, fit, level));
-                keys[i + k] = std::bit_cast<float>(counters[k]);
             }
         }
-        if (later) {
-            for (std::size_t k = 0; k < count; ++k) __builtin_prefetch(table + counters[k], 1);
-            for (; counted + behind <= i; ++counted) ++table[std::bit_cast<std::uint32_t>(keys[counted])];
-        } else {
-            for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
-        }
+        take(i, counters.data(), count);
         if (i % (looked_at * lanes) == 0) {
             auto far = hn::Lt(zero, zero);
             for (std::size_t a = 0; a < 3; ++a)
@@ -186,7 +178,6 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
             found.outside += looked_at * hn::CountTrue(d, far);
         }
     }
-    for (; later && counted < boxes.size(); ++counted) ++table[std::bit_cast<std::uint32_t>(keys[counted])];
     found.odd =
         !hn::AllTrue(d, hn::And(all_sides, hn::And(hn::Ge(lowest, hn::Neg(far_away)), hn::Le(highest, far_away))));
     return found;
@@ -241,12 +232,46 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
 }
 #endif
 
+/// See row_grid::count_cells.
+template <class Row>
+Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
+                       std::uint32_t* HWY_RESTRICT table) {
+    return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
+        std::memcpy(keys + i, counters, count * sizeof *counters);
+        for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
+    });
+}
+
+/// See row_grid::deal_boxes.
+template <class Row> Counted deal_boxes_of(std::span<const Row> boxes, Proxy first, const RowFit& fit, Hand& hand) {
+    constexpr std::size_t ahead = 8;  // boxes of a slab whose memory is on its way
+    Move* HWY_RESTRICT const to = hand.to;
+    std::uint32_t* HWY_RESTRICT const next = hand.next.data();
+    return for_counters(boxes, fit, [&](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t slab = static_cast<std::uint32_t>(counters[k]) >> hand.shift;
+            std::uint32_t at = next[slab];
+            if (HWY_UNLIKELY(hand.is_full(at))) at = hand.take_run(slab);
+            next[slab] = at + 1;
+            __builtin_prefetch(to + at + ahead, 1);
+            const Row& row = boxes[i + k];
+            to[at] = {proxy_of(row, first + static_cast<Proxy>(i + k)), box_of(row)};
+        }
+    });
+}
+
 /// The same for each kind of list, by names that dispatch knows.
 Counted count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
 }
 Counted count_list_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
+}
+Counted deal_moves_wide(std::span<const Move> boxes, Proxy first, const RowFit& fit, Hand& hand) {
+    return deal_boxes_of(boxes, first, fit, hand);
+}
+Counted deal_list_wide(std::span<const Aabb> boxes, Proxy first, const RowFit& fit, Hand& hand) {
+    return deal_boxes_of(boxes, first, fit, hand);
 }
 std::array<float, 3> gather_moves_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
                                        const std::array<float*, 6>& columns, Proxy* order) {

@@ -1,6 +1,7 @@
 #pragma once
 /// What tests of pairs share: places drawn at random, pairs in order, and the judge.
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,18 @@ namespace fase::broad {
 inline Vec3 place(Random& random, float from, float to) {
     const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
     return {x, y, z};
+}
+
+/// Boxes of sides 0.5 to 1.5 in a cube, about two neighbours each.
+inline std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}) {
+    Random random(seed);
+    const float world = std::cbrt(static_cast<float>(count) * 2);
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < count; ++p) {
+        const Vec3 lo = at + place(random, 0, world);
+        boxes.push_back({p, {lo, lo + place(random, 0.5f, 1.5f)}});
+    }
+    return boxes;
 }
 
 template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
