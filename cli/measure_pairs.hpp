@@ -44,7 +44,7 @@ struct TraceSurvey {
 
 /// Reads `frames` frames (0: all) and so judges the file; with `judge` finds their pairs by trying all (up to 1,000
 /// boxes) or with a plain sweep. Format as of TraceReader; Capacity for a frame with more pairs than 2^28, guessed
-/// from a sample of its boxes.
+/// from a sample of its boxes; without `judge` a sample of the frames too.
 Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell);
 
 /// Plays the trace to a structure. With `changes`, a frame tells which pairs began, stay and ended instead of listing

@@ -237,7 +237,11 @@ template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
                        std::uint32_t* HWY_RESTRICT table) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        std::memcpy(keys + i, counters, count * sizeof *counters);
+        if (HWY_LIKELY(count == Wide::lanes)) {
+            std::memcpy(keys + i, counters, Wide::lanes * sizeof *counters);
+        } else {
+            std::memcpy(keys + i, counters, count * sizeof *counters);
+        }
         for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
     });
 }
