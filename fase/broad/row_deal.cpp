@@ -34,10 +34,7 @@ template <class Row> Counted RowDeal::deal_from(std::span<const Row> boxes, cons
         parallel_ranges(*tasks, boxes.size(), part_length, deal_part);
     }
     Counted all;
-    for (const Counted& part : counted) {
-        all.outside += part.outside;
-        all.odd |= part.odd;
-    }
+    for (const Counted& part : counted) all += part;
     gather_runs(slabs, shift, fit.table);
     return all;
 }

@@ -16,11 +16,18 @@ float longest_side(const Aabb& box) {
 using Range = RowSample::Range;
 
 /// All but the outermost in 64 lie in it, with some room beside them: one box far away does not stretch the grid.
-Range main_range(std::vector<float>& sorted) {
-    const std::size_t out = sorted.size() < 256 ? 0 : sorted.size() / 64;
-    const float from = sorted[out], to = sorted[sorted.size() - 1 - out], room = (to - from) / 16;
-    const float least = std::max(sorted.front() - room / 4, from - room),
-                most = std::min(sorted.back() + room / 4, to + room);
+/// Changes the order of the coordinates.
+Range main_range(std::vector<float>& along) {
+    const std::size_t out = along.size() < 256 ? 0 : along.size() / 64;
+    const auto [first, last] = std::minmax_element(along.begin(), along.end());
+    const float lowest = *first, highest = *last;
+    const auto at = [&](std::size_t place) {
+        const auto nth = along.begin() + static_cast<std::ptrdiff_t>(place);
+        std::nth_element(along.begin(), nth, along.end());
+        return *nth;
+    };
+    const float from = at(out), to = at(along.size() - 1 - out), room = (to - from) / 16;
+    const float least = std::max(lowest - room / 4, from - room), most = std::min(highest + room / 4, to + room);
     return {least, most - least};
 }
 
@@ -55,22 +62,29 @@ template <class Row> void take_sample(std::span<const Row> boxes, std::size_t mo
     sample.boxes = boxes.size();
     sample.sides.clear();
     sample.corners.clear();
-    for (std::vector<float>& along : sample.sorted) along.clear();
-    const std::size_t count = std::min(boxes.size(), most);
+    for (std::vector<float>& along : sample.along) along.clear();
+    constexpr std::size_t least = 256, one_in = 32;  // a frame of few boxes shall not be long because of the choice
+    const std::size_t count = std::min({boxes.size(), most, std::max(least, boxes.size() / one_in)});
     for (std::size_t i = 0; i < count; ++i) {
         const Aabb& box = box_of(boxes[i * boxes.size() / count]);
         if (!is_ordinary(box)) continue;  // this will be noticed later
         sample.sides.push_back(longest_side(box));
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
-        for (std::size_t a = 0; a < 3; ++a) sample.sorted[a].push_back(sample.corners.back()[a]);
+        for (std::size_t a = 0; a < 3; ++a) sample.along[a].push_back(sample.corners.back()[a]);
     }
     if (sample.sides.empty()) return;
-    std::sort(sample.sides.begin(), sample.sides.end());
+    const auto side_at = [&](double share) {
+        const auto at =
+            sample.sides.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.sides.size() - 1));
+        std::nth_element(sample.sides.begin(), at, sample.sides.end());
+        return *at;
+    };
+    sample.most_sides = side_at(0.98);
+    sample.many_sides = side_at(0.8);
     std::array<bool, 3> wide{};
     for (std::size_t a = 0; a < 3; ++a) {
-        std::sort(sample.sorted[a].begin(), sample.sorted[a].end());
-        sample.ranges[a] = main_range(sample.sorted[a]);
-        wide[a] = sample.ranges[a].length > 4 * sample.side_at(0.98);
+        sample.ranges[a] = main_range(sample.along[a]);
+        wide[a] = sample.ranges[a].length > 4 * sample.most_sides;
     }
     sample.spread_share = share_of_places(sample, wide);
 }
@@ -133,8 +147,8 @@ std::array<int, 3> axes_for(const RowSample& sample) {
 void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit& fit) {
     fit.axis = axes_for(sample);
     // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
-    const double most_sides = sample.side_at(0.98), many_sides = sample.side_at(0.8);
-    const double spacing = spacing_of(sample, static_cast<double>(sample.boxes), sample.side_at(0.98));
+    const double most_sides = sample.most_sides, many_sides = sample.many_sides;
+    const double spacing = spacing_of(sample, static_cast<double>(sample.boxes), sample.most_sides);
     const bool sparse = spacing > 2 * most_sides;
     const bool by_list = settings.rows == RowGridSettings::Rows::List ||
                          (settings.rows == RowGridSettings::Rows::Chosen && sparse && sample.spread_share < 0.3f);
@@ -148,8 +162,9 @@ void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit
 
     std::size_t below = 0;  // of the sample, in the levels so far
     for (double limit = cell; below < sample.sides.size(); limit *= std::max(settings.level_ratio, 1.5f)) {
-        const auto end = std::upper_bound(sample.sides.begin(), sample.sides.end(), static_cast<float>(limit));
-        const auto within = static_cast<std::size_t>(end - sample.sides.begin());
+        const auto within = static_cast<std::size_t>(
+            std::count_if(sample.sides.begin(), sample.sides.end(),
+                          [most = static_cast<float>(limit)](float side) { return side <= most; }));
         if (within == below) continue;
         const double count = static_cast<double>(within - below) * static_cast<double>(sample.boxes) /
                              static_cast<double>(sample.sides.size());
@@ -183,7 +198,7 @@ void fit_rows_to(std::span<const Row> boxes, const RowGridSettings& settings, Ro
     for (RowLevel& level : fit.levels) {
         for (std::size_t a = 0; a < 3; ++a) level.stride[a] = std::max(level.stride[a], 1u);
         level.table = fit.table;
-        fit.table += level.cells(0) * level.cells(1) * level.cells(2) + 1;
+        fit.table += level.cells() + 1;
     }
 }
 

@@ -48,6 +48,12 @@ inline constexpr std::size_t past_caches = std::size_t{1} << 17;
 struct Counted {
     std::size_t outside = 0;  ///< about so many boxes lie outside of their level's cells by more than the size of one
     bool odd = false;         ///< one of them is not ordinary
+
+    Counted& operator+=(const Counted& more) {
+        outside += more.outside;
+        odd |= more.odd;
+        return *this;
+    }
 };
 /// Writes to keys[i] (as bits of a float) which counter of `table` box i belongs to, and counts it there.
 Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table);

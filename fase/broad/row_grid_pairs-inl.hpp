@@ -269,7 +269,7 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
     const Neighbours rows{set.table + level.table,     step_z, step_y - step_z, step_y, step_y + step_z,
                           level.cells(set.axis[2]) > 1};
     const std::size_t farthest = rows.has_z0 ? rows.y1z1 : rows.y1;
-    const std::size_t cells = std::size_t{level.cells(0)} * level.cells(1) * level.cells(2);
+    const std::size_t cells = level.cells();
     std::size_t fetched = begin;
     Batch batch;
     for (batch.begin = begin; batch.begin < end; batch.begin = batch.end) {

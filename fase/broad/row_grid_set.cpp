@@ -114,7 +114,7 @@ template <class Row> row_grid::Counted RowSet::count(std::span<const Row> boxes,
     float* keys = columns_.data() + slab.first;
     row_grid::Counted sum;
     for (const RecordSpan run : slab.runs) {
-        sum = row_grid::count_cells(boxes.subspan(run.begin, run.end - run.begin), fit_, keys, table_.data());
+        sum += row_grid::count_cells(boxes.subspan(run.begin, run.end - run.begin), fit_, keys, table_.data());
         keys += run.end - run.begin;
     }
     return sum;
@@ -135,7 +135,7 @@ void RowSet::place(std::span<const Row> boxes, const RowSlab& slab, std::span<st
     std::uint32_t begin = slab.first;
     for (std::size_t k = 0; k < fit_.levels.size(); ++k) {
         const RowLevel& level = fit_.levels[k];
-        const std::uint32_t last = level.table + level.cells(0) * level.cells(1) * level.cells(2);
+        const std::uint32_t last = level.table + level.cells();
         if (last < slab.counters || level.table >= slab.counters_end) continue;
         const std::uint32_t end = next[std::min(last, slab.counters_end - 1)];
         if (!level.listed) reaches[k] = gather(boxes, begin, end);
@@ -157,7 +157,7 @@ template <class Row> void RowSet::see_levels(std::span<const Row> boxes) {
     for (std::size_t k = 0; k < levels; ++k) {
         RowLevel& level = fit_.levels[k];
         level.first = table_[level.table];
-        level.count = table_[level.table + level.cells(0) * level.cells(1) * level.cells(2)] - level.first;
+        level.count = table_[level.table + level.cells()] - level.first;
         if (level.listed) {
             sort_listed(boxes, level);
             level.reach = gather(boxes, level.first, level.first + level.count);
@@ -279,7 +279,7 @@ std::string RowSet::broken_invariant(std::span<const Move> boxes) const {
     for (const RowLevel& level : fit_.levels) {
         if (level.first != next) return "a level does not begin where the one before ends";
         next += level.count;
-        const std::uint32_t cells = level.cells(0) * level.cells(1) * level.cells(2);
+        const std::uint32_t cells = level.cells();
         for (std::uint32_t cell = 0; cell < cells; ++cell) {
             const std::uint32_t begin = table_[level.table + cell], end = table_[level.table + cell + 1];
             if (begin > end || end > next) return "the cells of a level are not in order";

@@ -23,7 +23,7 @@ struct RowGridSettings {
     float level_ratio = 3;         ///< edges of a level to those of the level below; at least 1.5
     float cells_a_box = 0.8f;      ///< a table has no more cells than that, in the mean
     std::uint32_t fit_lasts = 64;  ///< commits until levels and cells are chosen anew, if nothing asks for it before
-    std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them
+    std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them, at the most
 };
 
 /// One level: boxes up to a size, each in the cell of its lower corner. Arrays go by axis of the world.
@@ -52,6 +52,7 @@ struct RowLevel {
     [[nodiscard]] std::uint32_t cells(int axis) const {
         return static_cast<std::uint32_t>(last[static_cast<std::size_t>(axis)]) + 1;
     }
+    [[nodiscard]] std::uint32_t cells() const { return cells(0) * cells(1) * cells(2); }
     /// As cell(), for the rows of a listed level.
     [[nodiscard]] std::int32_t listed_cell(int axis, float v) const {
         const double t = (double{v} - double{origin[static_cast<std::size_t>(axis)]}) / edge;
@@ -78,22 +79,18 @@ struct RowSample {
     };
     std::size_t boxes = 0;                      ///< how many it stands for
     std::vector<std::array<float, 3>> corners;  ///< lower ones
-    std::vector<float> sides;                   ///< longest ones, in order
-    std::array<std::vector<float>, 3> sorted;   ///< corners by axis, in order
+    std::vector<float> sides;                   ///< longest ones
+    float most_sides = 0, many_sides = 0;       ///< no shorter than 98 and 80 in a hundred of these
+    std::array<std::vector<float>, 3> along;    ///< corners by axis
     std::array<Range, 3> ranges;
     float spread_share = 1;  ///< of the places that as many boxes spread evenly would take: how many are taken
     std::vector<std::uint8_t> taken;
-
-    /// No longer than this is the given share of the longest sides.
-    [[nodiscard]] float side_at(double share) const {
-        return sides[static_cast<std::size_t>(share * static_cast<double>(sides.size() - 1))];
-    }
 };
 
 inline const Aabb& box_of(const Move& m) { return m.box; }
 inline const Aabb& box_of(const Aabb& box) { return box; }
 
-/// Chooses from a sample of the boxes, which must be ordinary. O(sample log sample).
+/// Chooses from a sample of the boxes, which must be ordinary. O(sample).
 void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
 void fit_rows(std::span<const Aabb> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
 
