@@ -15,18 +15,18 @@ float longest_side(const Aabb& box) {
 
 using Range = RowSample::Range;
 
-/// All but the outermost in 64 lie in it, with some room beside them: one box far away does not stretch the grid.
-/// Changes the order of the coordinates.
-Range main_range(std::vector<float>& along) {
-    const std::size_t out = along.size() < 256 ? 0 : along.size() / 64;
-    const auto [first, last] = std::minmax_element(along.begin(), along.end());
-    const float lowest = *first, highest = *last;
-    const auto at = [&](std::size_t place) {
-        const auto nth = along.begin() + static_cast<std::ptrdiff_t>(place);
-        std::nth_element(along.begin(), nth, along.end());
-        return *nth;
-    };
-    const float from = at(out), to = at(along.size() - 1 - out), room = (to - from) / 16;
+/// The value that a share of them do not exceed. Changes their order.
+float value_at(std::vector<float>& values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// All but the outermost in 64 of some values lie in it, with some room beside them: one box far away does not stretch
+/// the grid. The room ends not far beyond the lowest and highest of all.
+Range main_range(std::vector<float>& some, float lowest, float highest) {
+    const double out = some.size() < 192 ? 0 : 1.0 / 64;
+    const float from = value_at(some, out), to = value_at(some, 1 - out), room = (to - from) / 16;
     const float least = std::max(lowest - room / 4, from - room), most = std::min(highest + room / 4, to + room);
     return {least, most - least};
 }
@@ -62,28 +62,32 @@ template <class Row> void take_sample(std::span<const Row> boxes, std::size_t mo
     sample.boxes = boxes.size();
     sample.sides.clear();
     sample.corners.clear();
-    for (std::vector<float>& along : sample.along) along.clear();
-    constexpr std::size_t least = 256, one_in = 32;  // a frame of few boxes shall not be long because of the choice
-    const std::size_t count = std::min({boxes.size(), most, std::max(least, boxes.size() / one_in)});
+    const std::size_t count = std::min(boxes.size(), most);
     for (std::size_t i = 0; i < count; ++i) {
         const Aabb& box = box_of(boxes[i * boxes.size() / count]);
         if (!is_ordinary(box)) continue;  // this will be noticed later
         sample.sides.push_back(longest_side(box));
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
-        for (std::size_t a = 0; a < 3; ++a) sample.along[a].push_back(sample.corners.back()[a]);
     }
     if (sample.sides.empty()) return;
-    const auto side_at = [&](double share) {
-        const auto at =
-            sample.sides.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.sides.size() - 1));
-        std::nth_element(sample.sides.begin(), at, sample.sides.end());
-        return *at;
-    };
-    sample.most_sides = side_at(0.98);
-    sample.many_sides = side_at(0.8);
+    // Ranks follow from fewer of them: to find these takes most of the time.
+    constexpr std::size_t ranked = 256;
+    const std::size_t step = (sample.sides.size() + ranked - 1) / ranked;
+    std::vector<float>& some = sample.some;
+    some.clear();
+    for (std::size_t i = 0; i < sample.sides.size(); i += step) some.push_back(sample.sides[i]);
+    sample.most_sides = value_at(some, 0.98);
+    sample.many_sides = value_at(some, 0.8);
     std::array<bool, 3> wide{};
     for (std::size_t a = 0; a < 3; ++a) {
-        sample.ranges[a] = main_range(sample.along[a]);
+        float lowest = sample.corners[0][a], highest = lowest;
+        for (const std::array<float, 3>& corner : sample.corners) {
+            lowest = std::min(lowest, corner[a]);
+            highest = std::max(highest, corner[a]);
+        }
+        some.clear();
+        for (std::size_t i = 0; i < sample.corners.size(); i += step) some.push_back(sample.corners[i][a]);
+        sample.ranges[a] = main_range(some, lowest, highest);
         wide[a] = sample.ranges[a].length > 4 * sample.most_sides;
     }
     sample.spread_share = share_of_places(sample, wide);

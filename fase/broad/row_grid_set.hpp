@@ -23,7 +23,7 @@ struct RowGridSettings {
     float level_ratio = 3;         ///< edges of a level to those of the level below; at least 1.5
     float cells_a_box = 0.8f;      ///< a table has no more cells than that, in the mean
     std::uint32_t fit_lasts = 64;  ///< commits until levels and cells are chosen anew, if nothing asks for it before
-    std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them, at the most
+    std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them
 };
 
 /// One level: boxes up to a size, each in the cell of its lower corner. Arrays go by axis of the world.
@@ -80,8 +80,8 @@ struct RowSample {
     std::size_t boxes = 0;                      ///< how many it stands for
     std::vector<std::array<float, 3>> corners;  ///< lower ones
     std::vector<float> sides;                   ///< longest ones
-    float most_sides = 0, many_sides = 0;       ///< no shorter than 98 and 80 in a hundred of these
-    std::array<std::vector<float>, 3> along;    ///< corners by axis
+    float most_sides = 0, many_sides = 0;       ///< no shorter than 98 and 80 in a hundred, about
+    std::vector<float> some;                    ///< of these, or of the corners along an axis
     std::array<Range, 3> ranges;
     float spread_share = 1;  ///< of the places that as many boxes spread evenly would take: how many are taken
     std::vector<std::uint8_t> taken;

@@ -47,10 +47,6 @@ Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef
     return {};
 }
 
-void insert_sorted(std::vector<std::uint32_t>& list, std::uint32_t value) {
-    list.insert(std::lower_bound(list.begin(), list.end(), value), value);
-}
-
 BodyId make_body(WorldState& state, const BodyDef& def) {
     // All that may run out of memory comes first.
     const std::size_t slots = state.body_ids.size() + 1;
@@ -77,11 +73,9 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
     const bool moves = def.kind == BodyKind::Dynamic ||
                        (def.kind == BodyKind::Kinematic &&
                         (length_squared(def.linear_velocity) > 0 || length_squared(def.angular_velocity) > 0));
-    if (def.kind != BodyKind::Static) {
-        const bool awake = moves && (def.awake || def.kind == BodyKind::Kinematic);
-        traits.population = awake ? Population::Awake : Population::Asleep;
-        insert_sorted(awake ? state.awake : state.asleep, id.index);
-    }
+    if (def.kind != BodyKind::Static)
+        traits.population =
+            moves && (def.awake || def.kind == BodyKind::Kinematic) ? Population::Awake : Population::Asleep;
     dynamics::BodyMotion motion;
     motion.position = def.position;
     motion.rotation = normalized(def.rotation);
@@ -89,6 +83,9 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
     state.bodies.traits[id.index] = traits;
     state.bodies.motion[id.index] = motion;
     state.bodies.forces[id.index] = {};
+    const std::span<const std::uint32_t> one(&id.index, 1);
+    if (traits.population == Population::Awake) insert_ascending(state.awake, one);
+    if (traits.population == Population::Asleep) state.asleep.add(one, state.bodies.motion);
     renew_mass(state, id.index);
     if (def.kind != BodyKind::Static) {  // the velocity given is that of the centre of mass
         state.bodies.motion[id.index].linear_velocity = def.linear_velocity;
@@ -204,10 +201,9 @@ Result<void> World::remove_body(BodyId body) {
         drop_collider(state, c);
         c = next;
     }
-    for (auto* list : {&state.awake, &state.asleep}) {
-        const auto at = std::lower_bound(list->begin(), list->end(), body.index);
-        if (at != list->end() && *at == body.index) list->erase(at);
-    }
+    const std::span<const std::uint32_t> one(&body.index, 1);
+    erase_ascending(state.awake, one);
+    state.asleep.remove(one);
     std::erase(state.wake_wanted, body.index);
     state.exclusions.remove_all_of(body.index);
     state.bodies.traits[body.index] = {};

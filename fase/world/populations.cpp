@@ -97,15 +97,6 @@ template <class F> void move_pairs(PairList& from, PairList& into, PairList& mov
     }
 }
 
-void move_indices(std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& into,
-                  std::span<const std::uint32_t> bodies) {
-    std::vector<std::uint32_t> stay, all;
-    std::set_difference(from.begin(), from.end(), bodies.begin(), bodies.end(), std::back_inserter(stay));
-    std::merge(into.begin(), into.end(), bodies.begin(), bodies.end(), std::back_inserter(all));
-    from = std::move(stay);
-    into = std::move(all);
-}
-
 }  // namespace
 
 void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies) {
@@ -130,7 +121,8 @@ void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
         state.bodies.traits[body].population = Population::Awake;
         state.bodies.motion[body].sleep_time = 0;
     }
-    move_indices(state.asleep, state.awake, bodies);
+    state.asleep.remove(bodies);
+    insert_ascending(state.awake, bodies);
     move_boxes(state, bodies, Population::Asleep, Population::Awake);
     sort_out_pairs(state, bodies);
 }
@@ -142,7 +134,8 @@ void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
         state.bodies.motion[body].linear_velocity = {};
         state.bodies.motion[body].angular_velocity = {};
     }
-    move_indices(state.awake, state.asleep, bodies);
+    erase_ascending(state.awake, bodies);
+    state.asleep.add(bodies, state.bodies.motion);
     move_boxes(state, bodies, Population::Awake, Population::Asleep);
     note_sleepers(state, bodies);
     sort_out_pairs(state, bodies);
@@ -155,25 +148,18 @@ void want_awake(WorldState& state, std::uint32_t body) {
 
 void wake_wanted_islands(WorldState& state) {
     if (state.wake_wanted.empty()) return;
-    std::vector<std::uint32_t> islands;
-    for (const std::uint32_t body : state.wake_wanted) {
-        if (body >= state.bodies.traits.size()) continue;
-        const dynamics::BodyTraits& traits = state.bodies.traits[body];
-        if (traits.population != Population::Asleep) continue;
-        const std::uint32_t island = state.bodies.motion[body].island;
-        islands.push_back(island == no_index ? body : island);
-    }
+    std::vector<std::uint32_t> islands, bodies;
+    for (const std::uint32_t body : state.wake_wanted)
+        if (state.asleep.holds(body)) islands.push_back(state.asleep.island(body));
     state.wake_wanted.clear();
     std::sort(islands.begin(), islands.end());
     islands.erase(std::unique(islands.begin(), islands.end()), islands.end());
-    if (islands.empty()) return;
-    std::vector<std::uint32_t> bodies;
-    for (const std::uint32_t body : state.asleep) {
-        if (state.bodies.traits[body].quarantined) continue;
-        const std::uint32_t island = state.bodies.motion[body].island;
-        if (std::binary_search(islands.begin(), islands.end(), island == no_index ? body : island))
-            bodies.push_back(body);
-    }
+    for (const std::uint32_t island : islands)
+        state.asleep.for_each_of(island, [&](std::uint32_t body) {
+            if (!state.bodies.traits[body].quarantined) bodies.push_back(body);
+        });
+    if (bodies.empty()) return;
+    std::sort(bodies.begin(), bodies.end());
     for (const std::uint32_t body : bodies)
         if (const auto id = state.body_ids.id_at(body)) state.events.woke_up.push_back(*id);
     move_to_awake(state, bodies);

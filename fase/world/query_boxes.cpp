@@ -51,7 +51,7 @@ void find_strays(const WorldState& state) {
 }  // namespace
 
 void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodies) {
-    if (state.asleep.size() == bodies.size()) state.query.asleep_overhang = 0;  // nobody else is there
+    if (state.asleep.bodies.size() == bodies.size()) state.query.asleep_overhang = 0;  // nobody else is there
     for (const std::uint32_t body : bodies)
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
             state.query.asleep_overhang =

@@ -19,10 +19,6 @@ bool is_speed(Vec3 v) { return std::isfinite(length_squared(v)); }
 Error not_dynamic(const char* where) {
     return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
 }
-void remove_sorted(std::vector<std::uint32_t>& list, std::uint32_t value) {
-    const auto at = std::lower_bound(list.begin(), list.end(), value);
-    if (at != list.end() && *at == value) list.erase(at);
-}
 Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::BodyMotion& motion, Vec3 torque) {
     const auto free = [&](Vec3 v) {
         return Vec3{traits.locks & 8 ? 0 : v.x, traits.locks & 16 ? 0 : v.y, traits.locks & 32 ? 0 : v.z};
@@ -49,17 +45,16 @@ void renew_population(WorldState& state, std::uint32_t body) {
         proxies.push_back(c);
     }
     boxes_of(state, traits.population).erase(proxies);
-    remove_sorted(state.awake, body);
-    remove_sorted(state.asleep, body);
+    const std::span<const std::uint32_t> one(&body, 1);
+    erase_ascending(state.awake, one);
+    state.asleep.remove(one);
     traits.population = now;
-    boxes_of(state, now).insert(boxes);
-    if (now != Population::Static) {
-        auto& list = now == Population::Awake ? state.awake : state.asleep;
-        list.insert(std::lower_bound(list.begin(), list.end(), body), body);
-    }
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
-    sort_out_pairs(state, std::span(&body, 1));
+    boxes_of(state, now).insert(boxes);
+    if (now == Population::Awake) insert_ascending(state.awake, one);
+    if (now == Population::Asleep) state.asleep.add(one, state.bodies.motion);
+    sort_out_pairs(state, one);
     renew_boxes(state, body);
 }
 
@@ -68,7 +63,7 @@ Result<void> World::set_settings(const Settings& settings) {
     const bool sleep_ended = state_->settings.sleep && !settings.sleep;
     state_->settings = settings;
     if (sleep_ended)
-        for (const std::uint32_t body : state_->asleep) want_awake(*state_, body);
+        for (const std::uint32_t body : state_->asleep.bodies) want_awake(*state_, body);
     return {};
 }
 

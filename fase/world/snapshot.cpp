@@ -184,9 +184,9 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
 /// The one list of what a world's state is.
 template <class A> void describe(A& a, WorldState& s) {
     all(a, s.settings, s.steps, s.time, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces, s.collider_ids,
-        s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep, s.active.pairs, s.active.contacts,
-        s.resting.pairs, s.resting.contacts, s.contacts, s.free_contacts, s.edited_colliders, s.wake_wanted,
-        s.removed_any, s.ask_all);
+        s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep.bodies, s.active.pairs,
+        s.active.contacts, s.resting.pairs, s.resting.contacts, s.contacts, s.free_contacts, s.edited_colliders,
+        s.wake_wanted, s.removed_any, s.ask_all);
     std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
@@ -206,7 +206,7 @@ bool is_consistent(const WorldState& s) {
             if (!s.body_ids.alive_at(list[i]) || (i != 0 && list[i - 1] >= list[i])) return false;
         return true;
     };
-    if (!body_lists_good(s.awake) || !body_lists_good(s.asleep)) return false;
+    if (!body_lists_good(s.awake) || !body_lists_good(s.asleep.bodies)) return false;
     std::vector<std::uint32_t> chained(colliders, 0);
     for (std::uint32_t body = 0; body < bodies; ++body) {
         const dynamics::BodyTraits& traits = s.bodies.traits[body];
@@ -318,7 +318,8 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         }
         for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
             boxes->commit();
-        note_sleepers(*next, next->asleep);
+        next->asleep.relink(next->bodies.motion);
+        note_sleepers(*next, next->asleep.bodies);
         for (std::uint32_t i = 0; i < next->shapes.size(); ++i)
             if (next->shapes[i].users != 0) next->shape_of_key.emplace(next->shapes[i].key, i);
         state_ = std::move(next);

@@ -21,6 +21,7 @@
 #include "fase/world/body.hpp"
 #include "fase/world/events.hpp"
 #include "fase/world/settings.hpp"
+#include "fase/world/sleepers.hpp"
 #include "fase/world/stats.hpp"
 
 namespace fase {
@@ -117,10 +118,10 @@ struct WorldState {
     std::vector<std::uint32_t> free_shapes;
     pairs::PairExclusions exclusions;
 
-    std::vector<std::uint32_t> awake;   ///< body indices, ascending: dynamic ones and moving kinematic ones
-    std::vector<std::uint32_t> asleep;  ///< body indices, ascending
-    PairList active;                    ///< an awake body in each
-    PairList resting;                   ///< none
+    std::vector<std::uint32_t> awake;  ///< body indices, ascending: dynamic ones and moving kinematic ones
+    Sleepers asleep;
+    PairList active;   ///< an awake body in each
+    PairList resting;  ///< none
     std::vector<dynamics::Contact> contacts;
     std::vector<std::uint32_t> free_contacts;
     std::vector<std::uint32_t> edited_colliders;  ///< to ask for pairs in the next step

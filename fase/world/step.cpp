@@ -24,7 +24,7 @@ std::uint64_t bytes_held(const WorldState& s) {
     return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
            of(s.contacts) + of(s.active.pairs) + of(s.active.contacts) + of(s.resting.pairs) + of(s.resting.contacts) +
            of(s.candidates) + of(s.askers) + of(s.previous_boxes) + s.static_boxes.bytes() + s.asleep_boxes.bytes() +
-           s.awake_boxes.bytes() + s.solver.bytes();
+           s.awake_boxes.bytes() + s.asleep.bytes() + s.solver.bytes();
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void step(WorldState& state, float seconds) {
     state.report.step = state.steps;
     state.report.bodies = state.body_ids.count();
     state.report.awake = static_cast<std::uint32_t>(state.awake.size());
-    state.report.asleep = static_cast<std::uint32_t>(state.asleep.size());
+    state.report.asleep = static_cast<std::uint32_t>(state.asleep.bodies.size());
     state.report.pairs = static_cast<std::uint32_t>(state.active.size());
     state.report.structure = state.awake_boxes.info().name;
     if (state.suits_structures)

@@ -273,7 +273,7 @@ TEST(Query, finds_bodies_that_fell_asleep_in_full_motion) {
         run(world, 1.0 / 60);
         expect_right(world, static_cast<std::uint64_t>(200 + i), 6);
     }
-    EXPECT_FALSE(world.state().asleep.empty());
+    EXPECT_FALSE(world.state().asleep.bodies.empty());
     EXPECT_GT(world.state().query.asleep_overhang, 0);
     // A world made from its bytes measures anew.
     World copy = make_world();
