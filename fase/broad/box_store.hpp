@@ -157,6 +157,18 @@ public:
             if (region.touches(m.box) && !visit(m.proxy, m.box)) return false;
         return true;
     }
+    /// Visits the odd boxes nearer than the limit, in no order, and lowers it to what `visit` answers; false when that
+    /// is below zero: stop.
+    template <Measure M, class Visit> bool nearest_odd(const M& measure, float& limit, Visit&& visit) const {
+        for (const Move& m : odd_) {
+            const float at = measure.at(m.box, limit);
+            if (!(at < beyond)) continue;
+            const float wanted = visit(m.proxy, m.box, at);
+            limit = wanted < limit ? wanted : limit;
+            if (!(limit >= 0)) return false;
+        }
+        return true;
+    }
     /// Calls `add(p, q)` for each pair that has an odd box in it; with `awake_only`, unless both rest.
     template <class Add> void odd_pairs(bool awake_only, Add&& add) const {
         for (std::size_t i = 0; i < odd_.size(); ++i) {

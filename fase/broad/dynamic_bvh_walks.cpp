@@ -4,16 +4,6 @@
 #include "fase/broad/dynamic_bvh.hpp"
 
 namespace fase::broad {
-namespace {
-
-/// overlaps() without branches: in a descent its outcome cannot be predicted.
-bool meet(const Aabb& a, const Aabb& b) {
-    return (int(a.lo.x <= b.hi.x) & int(b.lo.x <= a.hi.x) & int(a.lo.y <= b.hi.y) & int(b.lo.y <= a.hi.y) &
-            int(a.lo.z <= b.hi.z) & int(b.lo.z <= a.hi.z)) != 0;
-}
-
-}  // namespace
-
 /// A simultaneous descent into two trees, or into one tree twice: pairs of nodes that overlap and have yet to be
 /// opened, and pairs of leaves whose exact boxes have yet to be tested.
 template <bool AwakeOnly> class DynamicBvh::Descent {
@@ -72,14 +62,17 @@ private:
             const Slot left = a.link, right = left + 1;
             add_if(!one_.nodes_[left].is_leaf(), {left, left});
             add_if(!one_.nodes_[right].is_leaf(), {right, right});
-            add_if(meet(one_.nodes_[left].box, one_.nodes_[right].box), {left, right});
+            add_if(overlaps_branchless(one_.nodes_[left].box, one_.nodes_[right].box), {left, right});
         } else if (b.is_leaf()) {
-            for (Slot i = a.link; i < a.link + 2; ++i) add_if(meet(one_.nodes_[i].box, b.box), {i, pair.b});
+            for (Slot i = a.link; i < a.link + 2; ++i)
+                add_if(overlaps_branchless(one_.nodes_[i].box, b.box), {i, pair.b});
         } else if (a.is_leaf()) {
-            for (Slot i = b.link; i < b.link + 2; ++i) add_if(meet(a.box, two_.nodes_[i].box), {pair.a, i});
+            for (Slot i = b.link; i < b.link + 2; ++i)
+                add_if(overlaps_branchless(a.box, two_.nodes_[i].box), {pair.a, i});
         } else {
             for (Slot i = a.link; i < a.link + 2; ++i)
-                for (Slot k = b.link; k < b.link + 2; ++k) add_if(meet(one_.nodes_[i].box, two_.nodes_[k].box), {i, k});
+                for (Slot k = b.link; k < b.link + 2; ++k)
+                    add_if(overlaps_branchless(one_.nodes_[i].box, two_.nodes_[k].box), {i, k});
         }
     }
     void test_leaves() {

@@ -44,14 +44,7 @@ public:
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
-        for (const Move& m : store_.odd()) {
-            const float at = measure.at(m.box, limit);
-            if (!(at < beyond)) continue;
-            const float wanted = visit(m.proxy, m.box, at);
-            limit = wanted < limit ? wanted : limit;
-            if (!(limit >= 0)) return;
-        }
-        tree_.nearest_first(measure, limit, visit);
+        if (store_.nearest_odd(measure, limit, visit)) tree_.nearest_first(measure, limit, visit);
     }
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const {
         for (const Move& m : store_.odd())

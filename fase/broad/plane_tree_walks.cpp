@@ -5,16 +5,6 @@
 #include "fase/broad/plane_tree.hpp"
 
 namespace fase::broad {
-namespace {
-
-/// overlaps() without branches: in a descent its outcome cannot be predicted.
-bool meet(const Aabb& a, const Aabb& b) {
-    return (int(a.lo.x <= b.hi.x) & int(b.lo.x <= a.hi.x) & int(a.lo.y <= b.hi.y) & int(b.lo.y <= a.hi.y) &
-            int(a.lo.z <= b.hi.z) & int(b.lo.z <= a.hi.z)) != 0;
-}
-
-}  // namespace
-
 /// A descent of a tree into itself: pairs of nodes that overlap (or are the same) and have yet to be opened.
 template <bool AwakeOnly> class PlaneTree::Descent {
 public:
@@ -52,7 +42,7 @@ private:
         open_.push(pair);
     }
     void add_if_meeting(NodeIndex a, NodeIndex b) {
-        if (meet(nodes_[a].box, nodes_[b].box)) add({a, b});
+        if (overlaps_branchless(nodes_[a].box, nodes_[b].box)) add({a, b});
     }
     void open_one() {
         const NodePair pair = open_.pop();
@@ -85,7 +75,7 @@ private:
             for (; first < stop; ++first) {
                 const bool wanted = !resting_only || rests(first);
                 hits[count] = entries_[first].proxy;
-                count += wanted && meet(mine.box, entries_[first].box) ? 1 : 0;
+                count += wanted && overlaps_branchless(mine.box, entries_[first].box) ? 1 : 0;
             }
             for (std::size_t i = 0; i < count; ++i) sink_.add(mine.proxy, hits[i]);
         }
@@ -107,7 +97,8 @@ private:
     void test_from(const Node& a, const Node& b, bool resting_only) {
         for (std::size_t i = a.first; i < a.first + a.count; ++i) {
             const Move mine = entries_[i];
-            if (!rests(i) && meet(mine.box, b.box)) test_row(mine, b.first, b.first + b.count, resting_only);
+            if (!rests(i) && overlaps_branchless(mine.box, b.box))
+                test_row(mine, b.first, b.first + b.count, resting_only);
         }
     }
 };

@@ -49,14 +49,8 @@ public:
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
-        for (const Move& m : store_.odd()) {
-            const float at = measure.at(m.box, limit);
-            if (!(at < beyond)) continue;
-            const float wanted = visit(m.proxy, m.box, at);
-            limit = wanted < limit ? wanted : limit;
-            if (!(limit >= 0)) return;
-        }
-        if (awake_.tree.nearest_first(measure, limit, visit)) resting_.tree.nearest_first(measure, limit, visit);
+        if (store_.nearest_odd(measure, limit, visit) && awake_.tree.nearest_first(measure, limit, visit))
+            resting_.tree.nearest_first(measure, limit, visit);
     }
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const {
         for (const Move& m : store_.odd())

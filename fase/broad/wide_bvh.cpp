@@ -55,13 +55,7 @@ void WideBvh::set_awake(Proxy p, bool awake) {
 }
 
 void WideBvh::clear() {
-    forest_.nodes.clear();
-    forest_.parents.clear();
-    forest_.ends.clear();
-    forest_.awake.clear();
-    forest_.ids.clear();
-    forest_.roots.clear();
-    forest_.holes.clear();
+    forest_.clear();
     spots_.clear();
     for (std::vector<Move>& list : lists_) list.clear();
     dirty_.clear();
@@ -214,13 +208,7 @@ void WideBvh::append_tree(Build how) {
 
 void WideBvh::rebuild(Build how) {
     collect(0);
-    forest_.nodes.clear();
-    forest_.parents.clear();
-    forest_.ends.clear();
-    forest_.awake.clear();
-    forest_.ids.clear();
-    forest_.roots.clear();
-    forest_.holes.clear();
+    forest_.clear();
     dirty_.clear();
     is_dirty_.clear();
     in_trees_ = items_.size();

@@ -24,6 +24,11 @@ constexpr bool overlaps(const Aabb& a, const Aabb& b) {
     return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
            b.lo.z <= a.hi.z;
 }
+/// The same without branches: for loops in which the answer cannot be predicted.
+constexpr bool overlaps_branchless(const Aabb& a, const Aabb& b) {
+    return (int(a.lo.x <= b.hi.x) & int(b.lo.x <= a.hi.x) & int(a.lo.y <= b.hi.y) & int(b.lo.y <= a.hi.y) &
+            int(a.lo.z <= b.hi.z) & int(b.lo.z <= a.hi.z)) != 0;
+}
 constexpr Aabb merge(const Aabb& a, const Aabb& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
 constexpr bool contains(const Aabb& outer, const Aabb& inner) {
     return outer.lo.x <= inner.lo.x && outer.lo.y <= inner.lo.y && outer.lo.z <= inner.lo.z &&

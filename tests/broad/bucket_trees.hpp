@@ -63,7 +63,7 @@ template <class S> void keeps_few_entries_for_huge_boxes() {
         std::vector<Move> boxes;
         for (Proxy p = 0; p < 2000; ++p) {
             const bool huge = p % every == 0;
-            boxes.push_back({p, cube(place(random, huge ? 50 : 100), huge ? 50 : 0.1f)});
+            boxes.push_back({p, cube(place(random, 0, huge ? 50 : 100), huge ? 50 : 0.1f)});
         }
         expect_like_brute_force(tree, boxes);
         EXPECT_LE(stats_of(tree).entries, S::most_entries * boxes.size());

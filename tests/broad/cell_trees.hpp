@@ -13,18 +13,14 @@
 #include "fase/broad/find_pairs.hpp"
 #include "fase/broad/stats.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad::cell_trees {
 
-inline Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
-inline Vec3 place(Random& random, float world) {
-    const float x = random.between(0, world), y = random.between(0, world), z = random.between(0, world);
-    return {x, y, z};
-}
 inline std::vector<Move> random_cubes(std::size_t count, float world, std::uint64_t seed, float side = 1) {
     Random random(seed);
     std::vector<Move> boxes;
-    for (Proxy p = 0; p < count; ++p) boxes.push_back({p, cube(place(random, world), side)});
+    for (Proxy p = 0; p < count; ++p) boxes.push_back({p, cube(place(random, 0, world), side)});
     return boxes;
 }
 
@@ -117,13 +113,13 @@ template <class S> void needs_no_more_memory_once_warm() {
     S tree;
     tree.build(random_cubes(2000, 25, 6));
     const auto one_round = [&] {
-        for (Proxy p = 0; p < 2000; ++p) tree.move(p, cube(place(random, 25)));
+        for (Proxy p = 0; p < 2000; ++p) tree.move(p, cube(place(random, 0, 25)));
         tree.commit();
         for (Proxy p = 0; p < 2000; p += 3) tree.set_awake(p, !tree.is_awake(p));
         tree.commit();
         for (Proxy p = 0; p < 2000; p += 3) tree.erase(p);
         tree.commit();
-        for (Proxy p = 0; p < 2000; p += 3) tree.insert(p, cube(place(random, 25)));
+        for (Proxy p = 0; p < 2000; p += 3) tree.insert(p, cube(place(random, 0, 25)));
         tree.commit();
     };
     for (int i = 0; i < 20; ++i) one_round();

@@ -17,6 +17,8 @@ inline Vec3 place(Random& random, float from, float to) {
     return {x, y, z};
 }
 
+inline Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
+
 /// Boxes of sides 0.5 to 1.5 in a cube, about two neighbours each.
 inline std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}) {
     Random random(seed);
@@ -27,6 +29,13 @@ inline std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}
         boxes.push_back({p, {lo, lo + place(random, 0.5f, 1.5f)}});
     }
     return boxes;
+}
+
+/// The structure with these boxes in it.
+template <class S> S filled(S s, const std::vector<Move>& boxes) {
+    for (const Move& m : boxes) s.insert(m.proxy, m.box);
+    s.commit();
+    return s;
 }
 
 template <class S> std::vector<Pair> sorted_pairs(const S& structure) {

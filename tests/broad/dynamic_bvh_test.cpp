@@ -6,21 +6,15 @@
 #include <cmath>
 
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
 
-Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
-
-Vec3 place(Random& random, float world) {
-    const float x = random.between(0, world), y = random.between(0, world), z = random.between(0, world);
-    return {x, y, z};
-}
-
 std::vector<Move> random_cubes(std::size_t count, float world, std::uint64_t seed) {
     Random random(seed);
     std::vector<Move> boxes;
-    for (Proxy p = 0; p < count; ++p) boxes.push_back({p, cube(place(random, world))});
+    for (Proxy p = 0; p < count; ++p) boxes.push_back({p, cube(place(random, 0, world))});
     return boxes;
 }
 
@@ -90,7 +84,7 @@ TEST(DynamicBvh, StaysGoodWhileEverythingMoves) {
     Random random(3);
     std::vector<Move> boxes = random_cubes(3000, 30, 3);
     std::vector<Vec3> velocity;
-    for (std::size_t i = 0; i < boxes.size(); ++i) velocity.push_back(place(random, 0.2f) - Vec3{0.1f, 0.1f, 0.1f});
+    for (std::size_t i = 0; i < boxes.size(); ++i) velocity.push_back(place(random, 0, 0.2f) - Vec3{0.1f, 0.1f, 0.1f});
     DynamicBvh tree;
     tree.build(boxes);
     for (int step = 0; step < 200; ++step) {
@@ -174,16 +168,16 @@ TEST(DynamicBvh, NeedsNoMoreMemoryOnceWarm) {
     DynamicBvh tree;
     tree.build(random_cubes(500, 15, 6));
     const auto one_round = [&] {
-        for (Proxy p = 0; p < 500; ++p) tree.move(p, cube(place(random, 15)));  // many: refitted
+        for (Proxy p = 0; p < 500; ++p) tree.move(p, cube(place(random, 0, 15)));  // many: refitted
         tree.commit();
-        for (Proxy p = 0; p < 500; p += 50) tree.move(p, cube(place(random, 15)));  // few: put in anew
+        for (Proxy p = 0; p < 500; p += 50) tree.move(p, cube(place(random, 0, 15)));  // few: put in anew
         tree.commit();
         for (Proxy p = 0; p < 500; p += 3) tree.erase(p);
         tree.commit();
-        for (Proxy p = 0; p < 500; p += 3) tree.insert(p, cube(place(random, 15)));
+        for (Proxy p = 0; p < 500; p += 3) tree.insert(p, cube(place(random, 0, 15)));
         tree.commit();
         for (Proxy p = 0; p < 500; ++p) tree.erase(p);
-        for (Proxy p = 0; p < 500; ++p) tree.insert(p, cube(place(random, 15)));
+        for (Proxy p = 0; p < 500; ++p) tree.insert(p, cube(place(random, 0, 15)));
         tree.commit();
     };
     for (int i = 0; i < 5; ++i) one_round();
@@ -204,7 +198,7 @@ TEST(DynamicBvh, ReportsTheSameForAnySettings) {
         tree.build(boxes);
         for (int step = 0; step < 10; ++step) {
             for (Proxy p = 0; p < 400; ++p)
-                if (random.below(3) == 0) tree.move(p, cube(place(random, 12)));
+                if (random.below(3) == 0) tree.move(p, cube(place(random, 0, 12)));
             tree.commit();
             ASSERT_EQ(tree.broken_invariant(), "");
         }

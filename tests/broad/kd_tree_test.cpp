@@ -56,8 +56,8 @@ INSTANTIATE_TEST_SUITE_P(KdTree, BothRules, ::testing::Values(KdTree::Rule::Surf
 TEST(KdTree, CutsWhereTheEmptySpaceIs) {
     std::vector<Aabb> boxes;
     Random random(4);
-    for (int i = 0; i < 50; ++i) boxes.push_back(cube(place(random, 5)));
-    for (int i = 0; i < 10; ++i) boxes.push_back(cube(place(random, 5) + Vec3{100, 0, 0}));
+    for (int i = 0; i < 50; ++i) boxes.push_back(cube(place(random, 0, 5)));
+    for (int i = 0; i < 10; ++i) boxes.push_back(cube(place(random, 0, 5) + Vec3{100, 0, 0}));
     KdTree tree;
     tree.build(numbered(boxes));
     std::vector<DrawnCell> cells;
@@ -73,7 +73,7 @@ TEST(KdTree, KeepsWhatAPlaneGoesThroughInAChildOfItsOwn) {
     // Two crowds, and a beam from one to the other.
     std::vector<Aabb> boxes{{{0, 2, 2}, {105, 3, 3}}};
     Random random(5);
-    for (int i = 0; i < 40; ++i) boxes.push_back(cube(place(random, 5) + Vec3{i % 2 == 0 ? 0.0f : 100.0f, 0, 0}));
+    for (int i = 0; i < 40; ++i) boxes.push_back(cube(place(random, 0, 5) + Vec3{i % 2 == 0 ? 0.0f : 100.0f, 0, 0}));
     KdTree tree;
     tree.build(numbered(boxes));
     bool alone = false;

@@ -12,7 +12,7 @@ std::vector<Move> cubes_of_many_sizes(std::size_t count, std::uint64_t seed) {
     std::vector<Move> boxes;
     for (Proxy p = 0; p < count; ++p) {
         const float side = std::ldexp(random.between(1, 2), static_cast<int>(random.below(8)) - 4);
-        boxes.push_back({p, cube(place(random, 40), side)});
+        boxes.push_back({p, cube(place(random, 0, 40), side)});
     }
     return boxes;
 }

@@ -68,7 +68,7 @@ TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
     Random random(5);
     std::vector<Move> boxes;
     for (Proxy p = 0; p < 4000; ++p) {
-        const Vec3 at = place(random, 100);
+        const Vec3 at = place(random, 0, 100);
         boxes.push_back({p, {{0, at.y, at.z}, {100, at.y + 1e-3f, at.z + 1e-3f}}});
     }
     Octree tree(Octree::Settings{.capacity = 1});
@@ -81,8 +81,8 @@ TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
 TEST(Octree, TestsLeavesOfAnySize) {
     Random random(4);
     std::vector<Move> boxes;
-    for (Proxy p = 0; p < 1700; ++p) boxes.push_back({p, cube(place(random, 3) * 0.1f)});
-    for (Proxy p = 1700; p < 2500; ++p) boxes.push_back({p, cube(place(random, 40), 0.5f)});
+    for (Proxy p = 0; p < 1700; ++p) boxes.push_back({p, cube(place(random, 0, 3) * 0.1f)});
+    for (Proxy p = 1700; p < 2500; ++p) boxes.push_back({p, cube(place(random, 0, 40), 0.5f)});
     Octree tree;
     expect_like_brute_force(tree, boxes);
     EXPECT_GT(stats_of(tree).largest_leaf, 1024u);

@@ -13,11 +13,6 @@
 
 namespace fase::broad {
 
-inline Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
-inline Vec3 place(Random& random, float world) {
-    const float x = random.between(0, world), y = random.between(0, world), z = random.between(0, world);
-    return {x, y, z};
-}
 inline std::vector<Move> numbered(const std::vector<Aabb>& boxes) {
     std::vector<Move> moves;
     for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
@@ -26,7 +21,7 @@ inline std::vector<Move> numbered(const std::vector<Aabb>& boxes) {
 inline std::vector<Move> random_cubes(std::size_t count, float world, std::uint64_t seed) {
     Random random(seed);
     std::vector<Aabb> boxes;
-    for (std::size_t i = 0; i < count; ++i) boxes.push_back(cube(place(random, world)));
+    for (std::size_t i = 0; i < count; ++i) boxes.push_back(cube(place(random, 0, world)));
     return numbered(boxes);
 }
 
@@ -37,7 +32,7 @@ inline std::map<std::string, std::vector<Move>> hard_sets() {
     std::map<std::string, std::vector<Aabb>> sets;
     for (int i = 0; i < count; ++i) {
         const auto number = static_cast<float>(i + 1);
-        const Vec3 half{number, number, number}, at = place(random, 40);
+        const Vec3 half{number, number, number}, at = place(random, 0, 40);
         sets["coincident"].push_back(cube({1, 2, 3}));
         sets["nested, even sizes"].push_back({-half, half});
         const float doubled = std::ldexp(1.0f, i % 110 - 55);

@@ -45,7 +45,7 @@ TEST(SurfacePlane, SeparatesWheneverThereIsOne) {
         std::vector<Aabb> boxes;
         for (std::uint64_t i = 0; i < 2 + random.below(40); ++i) {
             const float size = std::pow(10.0f, random.between(-6, 16));
-            boxes.push_back(cube(place(random, 1e16f) - Vec3{5e15f, 5e15f, 5e15f}, size));
+            boxes.push_back(cube(place(random, 0, 1e16f) - Vec3{5e15f, 5e15f, 5e15f}, size));
         }
         const std::vector<Move> moves = numbered(boxes);
         const auto best = plane_of_least_surface(moves, bounds_of(moves), 2 + static_cast<int>(random.below(31)));

@@ -9,6 +9,7 @@
 #include "fase/broad/build/radix_sort.hpp"
 #include "fase/broad/sweep_axis.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
@@ -25,18 +26,6 @@ std::vector<Move> random_boxes(std::size_t count, Vec3 world, float side, std::u
         boxes.push_back({p, box});
     }
     return boxes;
-}
-
-template <class S> S filled(S s, const std::vector<Move>& boxes) {
-    for (const Move& m : boxes) s.insert(m.proxy, m.box);
-    s.commit();
-    return s;
-}
-template <class S> std::vector<Pair> pairs_of(const S& s) {
-    std::vector<Pair> pairs;
-    s.find_pairs(pairs);
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
 }
 
 /// Counts how many boxes, of nodes or stored, it is asked about.
@@ -79,14 +68,14 @@ TEST(SweepAxis, IsTheOneOnWhichBoxesOverlapLeast) {
 
 TEST(SweepAndPrune, FindsTheSamePairsAlongEveryAxis) {
     const std::vector<Move> boxes = random_boxes(700, {9, 9, 9}, 1, 6);
-    const std::vector<Pair> expected = pairs_of(filled(BruteForce(), boxes));
+    const std::vector<Pair> expected = sorted_pairs(filled(BruteForce(), boxes));
     for (const int axis : {-1, 0, 1, 2}) {
         const auto s = filled(SweepAndPrune(SweepAndPrune::Settings{.axis = axis}), boxes);
         EXPECT_EQ(s.broken_invariant(), "");
         if (axis >= 0) {
             EXPECT_EQ(s.axis(), axis);
         }
-        EXPECT_EQ(pairs_of(s), expected);
+        EXPECT_EQ(sorted_pairs(s), expected);
     }
 }
 
@@ -105,7 +94,7 @@ TEST(SweepAndPrune, SortsBothRowsAnewWhenTheAxisChanges) {
     s.commit();
     EXPECT_EQ(s.axis(), 2);
     EXPECT_EQ(s.broken_invariant(), "");
-    EXPECT_EQ(pairs_of(s), pairs_of(judge));
+    EXPECT_EQ(sorted_pairs(s), sorted_pairs(judge));
 }
 
 TEST(SweepAndPrune, DoesNotLookAtAllBoxesForASmallRegionEvenBesideAHugeBox) {

@@ -8,14 +8,10 @@
 
 #include "fase/broad/brute_force.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
-
-Vec3 place(Random& random, float lo, float hi) {
-    const float x = random.between(lo, hi), y = random.between(lo, hi), z = random.between(lo, hi);
-    return {x, y, z};
-}
 
 /// Sides from 0 to `largest`, most of them small.
 std::vector<Move> random_boxes(std::size_t count, float world, float largest, std::uint64_t seed) {
@@ -29,27 +25,15 @@ std::vector<Move> random_boxes(std::size_t count, float world, float largest, st
     return boxes;
 }
 
-template <class S> S filled(S s, const std::vector<Move>& boxes) {
-    for (const Move& m : boxes) s.insert(m.proxy, m.box);
-    s.commit();
-    return s;
-}
-template <class S> std::vector<Pair> pairs_of(const S& s) {
-    std::vector<Pair> pairs;
-    s.find_pairs(pairs);
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
-}
-
 TEST(UniformGrid, FindsTheSamePairsWithCellsOfAnySize) {
     const std::vector<Move> boxes = random_boxes(900, 10, 12, 1);
-    const std::vector<Pair> expected = pairs_of(filled(BruteForce(), boxes));
+    const std::vector<Pair> expected = sorted_pairs(filled(BruteForce(), boxes));
     ASSERT_GT(expected.size(), 500u);
     for (const double cell : {0.0, 1e-6, 0.01, 0.3, 1.0, 7.0, 1e3, 1e30}) {
         SCOPED_TRACE(cell);
         const UniformGrid grid = filled(UniformGrid(UniformGrid::Settings{.cell = cell}), boxes);
         EXPECT_EQ(grid.broken_invariant(), "");
-        EXPECT_EQ(pairs_of(grid), expected);
+        EXPECT_EQ(sorted_pairs(grid), expected);
         for (const Move& m : boxes) {
             std::set<Proxy> found, wanted;
             grid.traverse(BoxRegion{m.box}, [&](Proxy p, const Aabb&) { return found.insert(p).second; });
@@ -68,9 +52,9 @@ TEST(UniformGrid, ReportsBoxesThatMeetOnTheBordersOfCellsOnce) {
                 const Vec3 at{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
                 boxes.push_back({static_cast<Proxy>(boxes.size()), {at, at + Vec3{1, 1, 1}}});
             }
-    const std::vector<Pair> expected = pairs_of(filled(BruteForce(), boxes));
+    const std::vector<Pair> expected = sorted_pairs(filled(BruteForce(), boxes));
     for (const double cell : {0.25, 0.5, 1.0, 2.0, 4.0})
-        EXPECT_EQ(pairs_of(filled(UniformGrid(UniformGrid::Settings{.cell = cell}), boxes)), expected);
+        EXPECT_EQ(sorted_pairs(filled(UniformGrid(UniformGrid::Settings{.cell = cell}), boxes)), expected);
 }
 
 TEST(UniformGrid, HoldsABoxInAtMostEightCells) {
@@ -91,7 +75,7 @@ TEST(UniformGrid, FitsItsCellsToMostBoxesAndNotToTheFewThatAreHugeOrFar) {
     const UniformGrid grid = filled(UniformGrid(), boxes);
     EXPECT_LT(grid.cell_side(), 2 * side);
     EXPECT_GT(grid.cell_side(), side / 2);
-    EXPECT_EQ(pairs_of(grid), pairs_of(filled(BruteForce(), boxes)));
+    EXPECT_EQ(sorted_pairs(grid), sorted_pairs(filled(BruteForce(), boxes)));
 }
 
 TEST(UniformGrid, SurvivesTheEndsOfItsNumbers) {
@@ -106,7 +90,7 @@ TEST(UniformGrid, SurvivesTheEndsOfItsNumbers) {
     boxes.push_back({501, {{1e17f, 1e17f, 1e17f}, {1e17f, 1e17f, 1e17f}}});
     const UniformGrid grid = filled(UniformGrid(UniformGrid::Settings{.cell = 0.5}), boxes);
     EXPECT_EQ(grid.broken_invariant(), "");
-    EXPECT_EQ(pairs_of(grid), pairs_of(filled(BruteForce(), boxes)));
+    EXPECT_EQ(sorted_pairs(grid), sorted_pairs(filled(BruteForce(), boxes)));
 }
 
 /// A measure that counts what it is asked.

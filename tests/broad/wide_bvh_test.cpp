@@ -11,28 +11,18 @@
 #include "fase/broad/cull.hpp"
 #include "fase/broad/find_pairs.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
 
-Vec3 point_in(Random& random, float lo, float hi) {
-    const float x = random.between(lo, hi), y = random.between(lo, hi), z = random.between(lo, hi);
-    return {x, y, z};
-}
-
 std::vector<Move> boxes_in(Random& random, std::size_t count, float side, Vec3 offset = {}) {
     std::vector<Move> boxes;
     for (Proxy p = 0; p < count; ++p) {
-        const Vec3 at = offset + point_in(random, 0, side), half = point_in(random, 0.1f, 1);
+        const Vec3 at = offset + place(random, 0, side), half = place(random, 0.1f, 1);
         boxes.push_back({p, {at - half, at + half}});
     }
     return boxes;
-}
-
-template <class S> S filled(S structure, const std::vector<Move>& boxes) {
-    for (const Move& m : boxes) structure.insert(m.proxy, m.box);
-    structure.commit();
-    return structure;
 }
 
 struct Hit {
@@ -250,7 +240,7 @@ TEST(WideBvh, StaysAsGoodAsNewWhileAllStirs) {
     double worst = 0;
     for (int frame = 0; frame < 60; ++frame) {
         for (Move& m : boxes) {
-            const Vec3 by = point_in(random, -2, 2);
+            const Vec3 by = place(random, -2, 2);
             m.box = {m.box.lo + by, m.box.hi + by};
             tree.move(m.proxy, m.box);
         }
@@ -337,7 +327,7 @@ TEST(WideBvh, FindsTheSameHoweverItIsSet) {
                     judge.erase(m.proxy);
                     stored[m.proxy] = 0;
                 } else if (stored[m.proxy] != 0 && chance < 8) {
-                    const Vec3 by = point_in(random, -1, 1);
+                    const Vec3 by = place(random, -1, 1);
                     m.box = {m.box.lo + by, m.box.hi + by};
                     tree.move(m.proxy, m.box);
                     judge.move(m.proxy, m.box);

@@ -55,14 +55,7 @@ public:
         if (go_on) tree_.traverse(region, visit);
     }
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
-        for (const Move& m : store_.odd()) {
-            const float at = measure.at(m.box, limit);
-            if (!(at < beyond)) continue;
-            const float wanted = visit(m.proxy, m.box, at);
-            limit = wanted < limit ? wanted : limit;
-            if (!(limit >= 0)) return;
-        }
-        tree_.nearest_first(measure, limit, visit);
+        if (store_.nearest_odd(measure, limit, visit)) tree_.nearest_first(measure, limit, visit);
     }
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const {
         store_.traverse_odd(region, [&](Proxy p, const Aabb& box) {

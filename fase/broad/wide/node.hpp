@@ -54,6 +54,16 @@ struct Forest {
     std::vector<std::uint32_t> roots;
     std::vector<std::uint32_t> holes;  ///< places in `ids` whose box is gone, ascending
 
+    /// The memory stays.
+    void clear() {
+        nodes.clear();
+        parents.clear();
+        ends.clear();
+        awake.clear();
+        ids.clear();
+        roots.clear();
+        holes.clear();
+    }
     [[nodiscard]] std::size_t bytes() const {
         return nodes.capacity() * sizeof(Node) + awake.capacity() +
                (parents.capacity() + ends.capacity() + ids.capacity() + roots.capacity() + holes.capacity()) *
