@@ -76,7 +76,7 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
     }
     if (automatic_) suit_all(true);
     updates_ = 0;
-    in_frame_ = false;
+    still_ = in_frame_ = false;
     not_before_ = 0;
     (void)most_moved(boxes_);
     // So that the first frame does not have to ask for memory.
@@ -120,6 +120,11 @@ void PairFinder::take_over(TaskRunner& tasks, std::span<const Proxy> changed) {
     if (automatic_) suit_all(++updates_ % looks_again == 0);
     for (AnyStructure* structure : {&awake_, &asleep_, &static_}) structure->commit(tasks);
     keep_static_pairs();
+    if (changed.empty() && !still_) {
+        still_pairs_.clear();
+        search(tasks, still_pairs_);
+    }
+    still_ = changed.empty();
 }
 
 /// Since the last call, by a look at some of them.
@@ -142,6 +147,7 @@ bool PairFinder::sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes) {
     }
     if (!in_frame_) awake_.clear();
     in_frame_ = true;
+    still_ = false;
     return true;
 }
 bool PairFinder::may_sort_frame(std::span<const Aabb> boxes) const {
@@ -239,6 +245,11 @@ void PairFinder::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
 }
 
 void PairFinder::find_awake_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
+    if (!still_) return search(tasks, out);
+    out.insert(out.end(), still_pairs_.begin(), still_pairs_.end());
+}
+
+void PairFinder::search(TaskRunner& tasks, std::vector<Pair>& out) const {
     if (in_frame_) return frame_.find(tasks, out);
     awake_.find_pairs(tasks, out);
     awake_.find_pairs_between(tasks, asleep_, out);

@@ -39,7 +39,7 @@ public:
     /// those that are empty, whatever it says.
     void build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const Population> populations);
     /// Takes the boxes of the next frame: as many as there were, or more, which come then. Only those that changed,
-    /// come or go cost more than a comparison.
+    /// come or go cost more than a comparison; when none did, the pairs are those of before, and nobody looks for them.
     void update(TaskRunner& tasks, std::span<const Aabb> boxes);
     /// The same for who knows which boxes change: they are written to writable_boxes() before, as many as there are,
     /// and `changed` names their places, each once, in order. One that is named counts as changed, whatever it is. Who
@@ -78,6 +78,8 @@ private:
     bool in_frame_ = false;         // awake_ is empty, and boxes_ are older, unless they are written to by the caller
     std::uint32_t not_before_ = 0;  // updates until that may be so again
     std::array<Aabb, 64> looked_at_{};
+    std::vector<Pair> still_pairs_;  // of those that are awake, when nothing changed in the last update
+    bool still_ = false;
     std::vector<Proxy> changed_;  // room for those of one update
     // The same, sorted out; those that wake both leave and come.
     std::vector<Proxy> moved_, came_, gone_, leaving_, static_moved_, static_came_, static_gone_;
@@ -93,6 +95,7 @@ private:
     [[nodiscard]] bool may_sort_frame(std::span<const Aabb> boxes) const;
     void leave_frame();
     void take_over(TaskRunner& tasks, std::span<const Proxy> changed);
+    void search(TaskRunner& tasks, std::vector<Pair>& out) const;
     void sort_out(TaskRunner& tasks, std::span<const Proxy> changed);
     void keep_static_pairs();
     void drop_pairs_of(std::span<const Proxy> proxies);

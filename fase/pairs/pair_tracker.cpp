@@ -40,7 +40,7 @@ PairChanges PairTracker::update(TaskRunner& tasks, std::span<const Aabb> boxes) 
     disturbs_rest ? finder_.find_pairs(tasks, found_) : finder_.find_awake_pairs(tasks, found_);
     begun_.clear();
     ended_.clear();
-    const std::size_t staying = tell(tasks);
+    const std::size_t staying = changed.empty() ? found_.size() : tell(tasks);  // all are where they were
     return {begun_, std::span<const Pair>(found_).first(staying), ended_};
 }
 

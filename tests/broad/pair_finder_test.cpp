@@ -242,6 +242,35 @@ TEST_P(EveryStructure, TakesFramesInWhichAllMoveFewMoveOrSomeGo) {
     }
 }
 
+TEST_P(EveryStructure, KeepsThePairsOfFramesInWhichNothingChanges) {
+    Random random(14);
+    for (const std::size_t count : {60u, 1200u}) {
+        std::vector<Aabb> boxes;
+        std::vector<Population> populations;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float world = count < 100 ? 6 : 20;
+            boxes.push_back(conformance::box_around(conformance::point_in(random, 0, world), {0.5f, 0.5f, 0.5f}));
+            populations.push_back(i % 7 == 0   ? Population::Static
+                                  : i % 5 == 0 ? Population::Asleep
+                                               : Population::Awake);
+        }
+        finder.build(*one, boxes, populations);
+        for (int frame = 0; frame < 24; ++frame) {
+            const std::uint64_t movers = frame % 3 != 0 ? 0 : frame % 2 == 0 ? 2 : count;
+            for (std::uint64_t k = 0; k < movers; ++k) {
+                const std::size_t p = movers == count ? k : random.below(count);
+                boxes[p] = conformance::box_around(conformance::point_in(random, 0, 20), {0.5f, 0.5f, 0.5f});
+                if (populations[p] == Population::Asleep) populations[p] = Population::Awake;
+            }
+            if (frame == 13) boxes.push_back(boxes[1]), populations.push_back(Population::Awake);
+            if (frame == 19) finder.build(*four, boxes, populations);
+            finder.update(frame % 2 == 0 ? *one : *four, boxes);
+            ASSERT_EQ(finder.broken_invariant(), "") << frame;
+            ASSERT_EQ(pairs_of(finder, *one), expected_pairs(boxes, populations)) << frame;
+        }
+    }
+}
+
 TEST_P(EveryStructure, IsBuiltAnewAndMayBeEmpty) {
     finder.build(*one, {}, {});
     finder.update(*one, {});
