@@ -18,13 +18,13 @@ FIELDS = ["machine", "date", "commit", "trace", "boxes", "frames", "structure", 
           "bytes_a_box", "depth", "boxes_a_leaf", "pairs"]
 
 
-def rows_of(program, kind, count, frames, folder):
+def rows_of(program, kind, count, frames, rounds, folder):
     """One dictionary a structure, measured on a fresh trace of that kind."""
     trace = Path(folder) / f"{kind}.aabt"
     subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
                    stdout=subprocess.DEVNULL)
     told = {}
-    for structure in ("auto", "all") * 3:  # in turns; of three runs the quickest counts
+    for structure in ("auto", "all") * rounds:  # in turns; the quickest run counts
         out = subprocess.run([program, "pairs", trace, "--structure", structure, "--check", "--json"], check=True,
                              stdout=subprocess.PIPE, text=True).stdout
         for row in json.loads(out):
@@ -49,7 +49,8 @@ def main():
     about = origin_of(options.repository)
     with tempfile.TemporaryDirectory() as folder:
         rows = [about | row for count in options.counts for kind in KINDS
-                for row in rows_of(str(options.program), kind, count, options.frames * (10 if count < 10000 else 1), folder)]
+                for row in rows_of(str(options.program), kind, count, options.frames * (3 if count < 10000 else 1),
+                                   12 if count < 10000 else 3, folder)]
     write_table(options.repository / "bench/results/structures.csv", FIELDS, rows)
     return 0
 

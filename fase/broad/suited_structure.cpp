@@ -9,8 +9,8 @@ namespace {
 
 // Below the first number trying all wins whatever the boxes, above the second sorting them into rows does. Between,
 // rows pay for each level of sizes, so that the more sizes differ, the longer trying all wins.
-constexpr std::size_t always_few = 100, never_few = 320;
-constexpr std::size_t few_of_one_size = 130, few_of_many_sizes = 250;
+constexpr std::size_t always_few = 80, never_few = 160;
+constexpr std::size_t few_of_one_size = 95, few_of_many_sizes = 130;
 constexpr float many_sizes = 4;
 
 float longest_side(const Aabb& box) {

@@ -26,7 +26,7 @@ struct SuitedStructure {
 [[nodiscard]] bool count_decides(std::size_t boxes);
 
 /// Puts what is stored into the structure that suits it, awake or not as it is; commits when it does. To be called
-/// before each commit: O(1), but when the structure changes, and for sets of a few hundred boxes with `looks_closely`
+/// before each commit: O(1), but when the structure changes, and for sets of about a hundred boxes with `looks_closely`
 /// (now and then), where sizes matter. The pairs that are found do not depend on it.
 void suit(AnyStructure& structure, bool looks_closely);
 
