@@ -70,11 +70,10 @@ void PairFinder::build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span
         AnyStructure& structure = structure_of(*this, population);
         if (automatic_) {
             structure.clear();
-            structure.become(*AnyStructure::named(suited_structure({row.size(), 1}, {}).structure));
+            structure.become(*AnyStructure::named(suited_structure(statistics_of(row, use_of(population)), {})));
         }
         population == Population::Awake ? structure.build(row) : structure.build_still(row);
     }
-    if (automatic_) suit_all(true);
     updates_ = 0;
     still_ = in_frame_ = false;
     not_before_ = 0;
@@ -204,14 +203,13 @@ void PairFinder::sort_out(TaskRunner& tasks, std::span<const Proxy> changed) {
 }
 
 void PairFinder::suit_all(bool looks_closely) {
-    for (AnyStructure* structure : {&awake_, &asleep_, &static_}) suit(*structure, looks_closely);
+    for (const Population population : {Population::Awake, Population::Asleep, Population::Static})
+        suit(structure_of(*this, population), use_of(population), looks_closely);
 }
 
 SuitedStructure PairFinder::chosen(Population population) const {
-    const AnyStructure& structure = structure_of(*this, population);
-    const std::string_view name = structure.info().name;
-    if (!automatic_) return {name, {}};
-    return {name, suited_structure({population == Population::Awake ? awake() : structure.size(), 1}, name).reason};
+    const std::string_view name = structure_of(*this, population).info().name;
+    return {name, automatic_ ? reason_for(name) : std::string_view()};
 }
 
 /// The pairs of static boxes that changed, came or went with those that sleep.

@@ -89,6 +89,9 @@ private:
                : population == Population::Asleep ? self.asleep_
                                                   : self.awake_;
     }
+    [[nodiscard]] static BoxUse use_of(Population population) {
+        return population == Population::Awake ? BoxUse::FindsPairs : BoxUse::IsAsked;
+    }
     void suit_all(bool looks_closely);
     [[nodiscard]] bool most_moved(std::span<const Aabb> boxes);
     [[nodiscard]] bool sort_frame(TaskRunner& tasks, std::span<const Aabb> boxes);

@@ -7,26 +7,54 @@
 namespace fase::broad {
 namespace {
 
-// Below the first number trying all wins whatever the boxes, above the second sorting them into rows does. Between,
-// rows pay for each level of sizes, so that the more sizes differ, the longer trying all wins.
-constexpr std::size_t always_few = 80, never_few = 160;
-constexpr std::size_t few_of_one_size = 95, few_of_many_sizes = 130;
+// Where trying all costs as much as sorting into rows, in boxes. Rows pay for each level of sizes, so that the more
+// sizes differ, the longer trying all wins; on a plane they are short. Who is only asked does not find pairs of its
+// own.
+constexpr double usual = 110, on_a_plane = 60, of_many_sizes = 130, asked = 400;
+constexpr std::size_t always_few = 50, never_few = 160;  // of those that find pairs, whatever the boxes
 constexpr float many_sizes = 4;
+
+double middle_of(const BoxStatistics& statistics) {
+    if (statistics.use == BoxUse::IsAsked) return asked;
+    return statistics.size_spread >= many_sizes ? of_many_sizes : statistics.flat ? on_a_plane : usual;
+}
+
+/// Whether sizes and places do not matter.
+bool count_decides(std::size_t boxes, BoxUse use) {
+    return use == BoxUse::IsAsked || boxes <= always_few || boxes >= never_few;
+}
 
 float longest_side(const Aabb& box) {
     const Vec3 side = extent(box);
     return std::max({side.x, side.y, side.z});
 }
 
-BoxStatistics statistics_of(const AnyStructure& structure) {
-    BoxStatistics found{structure.size(), 1};
-    if (count_decides(found.boxes)) return found;
+BoxStatistics look_at(const AnyStructure& structure, BoxUse use) {
+    std::vector<Move> boxes;
+    if (!count_decides(structure.size(), use)) {
+        structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
+            boxes.push_back({p, box});
+            return true;
+        });
+        return statistics_of(boxes, use);
+    }
+    return {.boxes = structure.size(), .use = use};
+}
+
+}  // namespace
+
+BoxStatistics statistics_of(std::span<const Move> boxes, BoxUse use) {
+    BoxStatistics found{.boxes = boxes.size(), .use = use};
+    if (count_decides(found.boxes, use)) return found;
     std::vector<float> sides;
-    structure.traverse(Everything{}, [&](Proxy, const Aabb& box) {
-        const float side = longest_side(box);
-        if (side >= 0 && side < Aabb::infinity) sides.push_back(side);  // false for NaN
-        return true;
-    });
+    Aabb corners;
+    for (const Move& m : boxes) {
+        const float side = longest_side(m.box);
+        if (!(side >= 0 && side < Aabb::infinity)) continue;  // a NaN too
+        sides.push_back(side);
+        corners.lo = min(corners.lo, m.box.lo);
+        corners.hi = max(corners.hi, m.box.lo);
+    }
     if (sides.size() < 2) return found;
     const auto at = [&](std::size_t place) {
         const auto nth = sides.begin() + static_cast<std::ptrdiff_t>(place);
@@ -35,28 +63,27 @@ BoxStatistics statistics_of(const AnyStructure& structure) {
     };
     const float most = at(sides.size() * 49 / 50), middle = at(sides.size() / 2);
     found.size_spread = middle > 0 ? most / middle : (most > 0 ? Aabb::infinity : 1);
+    const Vec3 spread = extent(corners);
+    found.flat = std::min({spread.x, spread.y, spread.z}) <= 2 * middle;
     return found;
 }
 
-}  // namespace
-
-SuitedStructure suited_structure(const BoxStatistics& statistics, std::string_view current) {
-    const SuitedStructure all{BruteForce::info.name, "few boxes: to try all costs less than to sort them"};
-    const SuitedStructure rows{RowGrid::info.name, "many boxes: sorted into rows, each meets only its neighbours"};
-    if (count_decides(statistics.boxes)) return statistics.boxes <= always_few ? all : rows;
-    const bool many = statistics.size_spread >= many_sizes;
-    const double middle = static_cast<double>(many ? few_of_many_sizes : few_of_one_size);
-    const auto count = static_cast<double>(statistics.boxes);
-    const bool tries_all = current == all.structure ? count < 1.15 * middle : count < 0.85 * middle;
-    return tries_all ? all : rows;
+std::string_view reason_for(std::string_view structure) {
+    if (structure == BruteForce::info.name) return "few boxes: to try all costs less than to sort them";
+    if (structure == RowGrid::info.name) return "many boxes: sorted into rows, each meets only its neighbours";
+    return {};
 }
 
-bool count_decides(std::size_t boxes) { return boxes <= always_few || boxes >= never_few; }
+std::string_view suited_structure(const BoxStatistics& statistics, std::string_view current) {
+    const double middle = middle_of(statistics);
+    const double share = current.empty() ? 1 : current == BruteForce::info.name ? 1.15 : 0.85;
+    return static_cast<double>(statistics.boxes) < share * middle ? BruteForce::info.name : RowGrid::info.name;
+}
 
-void suit(AnyStructure& structure, bool looks_closely) {
-    if (!looks_closely && !count_decides(structure.size())) return;
-    const SuitedStructure suited = suited_structure(statistics_of(structure), structure.info().name);
-    if (suited.structure != structure.info().name) structure.become(*AnyStructure::named(suited.structure));
+void suit(AnyStructure& structure, BoxUse use, bool looks_closely) {
+    if (!looks_closely && !count_decides(structure.size(), use)) return;
+    const std::string_view suited = suited_structure(look_at(structure, use), structure.info().name);
+    if (suited != structure.info().name) structure.become(*AnyStructure::named(suited));
 }
 
 }  // namespace fase::broad

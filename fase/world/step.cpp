@@ -56,8 +56,7 @@ void step(WorldState& state, float seconds) {
     state.report.asleep = static_cast<std::uint32_t>(state.asleep.bodies.size());
     state.report.pairs = static_cast<std::uint32_t>(state.active.size());
     state.report.structure = state.awake_boxes.info().name;
-    if (state.suits_structures)
-        state.report.reason = broad::suited_structure({state.awake_boxes.size(), 1}, state.report.structure).reason;
+    if (state.suits_structures) state.report.reason = broad::reason_for(state.report.structure);
     state.report.bytes = bytes_held(state);
 }
 

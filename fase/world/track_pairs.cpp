@@ -202,9 +202,8 @@ void update_list(WorldState& state, PairList& list, std::span<const Pair> found)
 
 void track_pairs(WorldState& state) {
     const auto commit = [&] {
-        constexpr std::uint64_t looks_again = 32;  // steps
         for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) {
-            if (state.suits_structures) broad::suit(*boxes, state.steps % looks_again == 0);
+            if (state.suits_structures) broad::suit(*boxes, broad::BoxUse::IsAsked);
             boxes->commit(*state.tasks);
         }
     };

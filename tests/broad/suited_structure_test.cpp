@@ -28,42 +28,57 @@ AnyStructure filled(std::string_view name, std::span<const Move> boxes) {
 }
 
 TEST(SuitedStructure, TriesAllOfFewAndSortsMany) {
-    EXPECT_EQ(suited_structure({10, 1}, {}).structure, "brute_force");
-    EXPECT_EQ(suited_structure({10000, 1}, {}).structure, "row_grid");
-    EXPECT_NE(suited_structure({10, 1}, {}).reason, suited_structure({10000, 1}, {}).reason);
-    for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to trying all as the number grows
-        bool sorts = false;
-        for (std::size_t n = 0; n < 1000; ++n) {
-            const bool now = suited_structure({n, spread}, {}).structure == "row_grid";
-            EXPECT_TRUE(now || !sorts) << n;
-            sorts = now;
-        }
-    }
+    EXPECT_EQ(suited_structure({10}, {}), "brute_force");
+    EXPECT_EQ(suited_structure({10000}, {}), "row_grid");
+    EXPECT_NE(reason_for("brute_force"), reason_for("row_grid"));
+    EXPECT_TRUE(reason_for("octree").empty());
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked})
+        for (const bool flat : {false, true})
+            for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to trying all as the number grows
+                bool sorts = false;
+                for (std::size_t n = 0; n < 1000; ++n) {
+                    const bool now = suited_structure({n, spread, flat, use}, {}) == "row_grid";
+                    EXPECT_TRUE(now || !sorts) << n;
+                    sorts = now;
+                }
+                EXPECT_TRUE(sorts);
+            }
 }
 
 TEST(SuitedStructure, DoesNotFlicker) {
     // A count that goes up and down by a tenth changes the structure at most once.
-    for (std::size_t middle = 20; middle < 1000; middle += 5) {
-        std::string_view current = suited_structure({middle, 1}, {}).structure;
-        int changes = 0;
-        for (int i = 0; i < 10; ++i) {
-            const std::size_t n = i % 2 == 0 ? middle * 10 / 11 : middle * 11 / 10;
-            const std::string_view next = suited_structure({n, 1}, current).structure;
-            changes += next != current ? 1 : 0;
-            current = next;
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked}) {
+        for (std::size_t middle = 20; middle < 1000; middle += 5) {
+            std::string_view current = suited_structure({.boxes = middle, .use = use}, {});
+            int changes = 0;
+            for (int i = 0; i < 10; ++i) {
+                const std::size_t n = i % 2 == 0 ? middle * 10 / 11 : middle * 11 / 10;
+                const std::string_view next = suited_structure({.boxes = n, .use = use}, current);
+                changes += next != current ? 1 : 0;
+                current = next;
+            }
+            EXPECT_LE(changes, middle < 90 || middle > 470 ? 0 : 1) << middle;
         }
-        EXPECT_LE(changes, middle < 90 || middle > 360 ? 0 : 1) << middle;
     }
 }
 
-TEST(SuitedStructure, LooksAtSizesWhereItMatters) {
-    AnyStructure alike = filled("brute_force", row_of(200)), unlike = filled("brute_force", row_of(200, 9));
-    suit(alike, false);
+TEST(SuitedStructure, LooksAtSizesAndPlacesWhereTheyMatter) {
+    AnyStructure alike = filled("brute_force", row_of(100)), unlike = filled("brute_force", row_of(100, 9));
+    suit(alike, BoxUse::FindsPairs);
     EXPECT_EQ(alike.info().name, "brute_force") << "not looked at closely";
-    suit(alike, true);
-    suit(unlike, true);
+    suit(alike, BoxUse::IsAsked, true);
+    EXPECT_EQ(alike.info().name, "brute_force") << "few for those who ask";
+    suit(alike, BoxUse::FindsPairs, true);
+    suit(unlike, BoxUse::FindsPairs, true);
     EXPECT_EQ(alike.info().name, "row_grid");
     EXPECT_EQ(unlike.info().name, "brute_force");
+    std::vector<Move> cube;
+    for (Proxy p = 0; p < 100; ++p)
+        cube.push_back({p, {{float(p % 5) * 2, float(p / 5 % 5) * 2, float(p / 25) * 2}, {}}});
+    for (Move& m : cube) m.box.hi = m.box.lo + Vec3{1, 1, 1};
+    EXPECT_FALSE(statistics_of(cube, BoxUse::FindsPairs).flat);
+    EXPECT_TRUE(statistics_of(row_of(100), BoxUse::FindsPairs).flat);
+    EXPECT_FLOAT_EQ(statistics_of(row_of(100, 9), BoxUse::FindsPairs).size_spread, 9);
 }
 
 TEST(SuitedStructure, EveryStructureBecomesEveryOther) {
