@@ -27,14 +27,19 @@ def rows_of(program, kind, count, folder):
     frames = max(12, min(200, 2_000_000 // count))
     subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
                    stdout=subprocess.DEVNULL)
-    for structure, threads, told, most in SERIES:
-        if count > most:
-            continue
+    series = [one[:3] for one in SERIES if count <= one[3]]
+    best = {}
+    for one in series * 3:  # in turns; of three runs the quickest counts
+        structure, threads, told = one
         arguments = [program, "pairs", trace, "--structure", structure, "--threads", str(threads), "--json"]
         out = subprocess.run(arguments + (["--changes"] if told == "changes" else []), check=True, stdout=subprocess.PIPE,
                              text=True).stdout
         row = json.loads(out)[0]
-        yield {"trace": kind, "boxes": count, "structure": structure, "threads": threads, "told": told, "frames": row["frames"],
+        if one not in best or row["ms"]["median"] < best[one]["ms"]["median"]:
+            best[one] = row
+    for one in series:
+        row = best[one]
+        yield {"trace": kind, "boxes": count, "structure": one[0], "threads": one[1], "told": one[2], "frames": row["frames"],
                "mean_ms": row["ms"]["mean"], "median_ms": row["ms"]["median"], "worst_ms": row["ms"]["worst"],
                "least_ms": row["ms"]["least"], "pairs": row["pairs_last"]}
 

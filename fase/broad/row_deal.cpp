@@ -19,7 +19,7 @@ template <class Row> Counted RowDeal::deal_from(std::span<const Row> boxes, cons
     const auto shift = static_cast<unsigned>(std::bit_width(fit.table / wanted));
     const std::size_t slabs = (fit.table >> shift) + std::size_t{1};
     const std::size_t part_room = part_length + slabs * Hand::run_length;
-    if (pool_.size() < parts * part_room + 1) pool_.resize(parts * (part_room + part_length / 16) + 1);
+    if (pool_.size() < parts * part_room + 1) pool_.resize(parts * (part_room + part_length / 64) + 1);
     hands_.resize(parts);
     std::vector<Counted> counted(parts);
     const auto deal_part = [&](std::size_t begin, std::size_t end) {
