@@ -35,7 +35,8 @@ public:
     row_grid::Counted deal(std::span<const Aabb> boxes, const RowFit& fit, TaskRunner* tasks) {
         return deal_from(boxes, fit, tasks);
     }
-    /// The slabs, in the order of the table; together they have all counters.
+    /// The slabs, in the order of the table; together they have all counters. They point into this deal: a copy of it
+    /// has to deal anew.
     [[nodiscard]] std::span<const RowSlab> slabs() const { return slabs_; }
     /// What runs are places in; with room behind them.
     [[nodiscard]] std::span<const Move> boxes() const { return pool_; }

@@ -70,7 +70,7 @@ public:
 
     Move* to = nullptr;
     unsigned shift = 0;
-    /// By slab: where its next box goes, unless that is 0 or the run is full: see is_full().
+    /// By slab: where its next box goes, unless the run is full: see is_full().
     std::array<std::uint32_t, most_slabs> next{};
 
     /// Takes runs of `places` from `first` on.

@@ -87,11 +87,14 @@ struct RowSample {
     std::vector<std::uint8_t> taken;
 };
 
+/// The box of a row of a list, whichever kind of list it is.
 inline const Aabb& box_of(const Move& m) { return m.box; }
+/// The same where the list holds nothing but boxes.
 inline const Aabb& box_of(const Aabb& box) { return box; }
 
 /// Chooses from a sample of the boxes, which must be ordinary. O(sample).
 void fit_rows(std::span<const Move> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
+/// The same for a list of boxes alone.
 void fit_rows(std::span<const Aabb> boxes, const RowGridSettings& settings, RowSample& sample, RowFit& fit);
 
 /// A row of a listed level that holds a box: its boxes run to the first of the next row.
@@ -117,6 +120,7 @@ struct RowView {
         return {{lo[0][i], lo[1][i], lo[2][i]}, {hi[0][i], hi[1][i], hi[2][i]}};
     }
 };
+/// Floats that may be read behind a column.
 inline constexpr std::size_t row_slack = 32;
 /// The proxy of a record that RowSet::kill() has emptied.
 inline constexpr Proxy killed = 0xffffffff;
@@ -126,11 +130,14 @@ struct RecordSpan {
     std::uint32_t begin = 0, end = 0;
 };
 
+/// See row_deal.hpp.
 class RowDeal;
+/// See row_deal.hpp.
 struct RowSlab;
 namespace row_grid {
+/// See row_grid_kernels.hpp.
 struct Counted;
-}
+}  // namespace row_grid
 
 /// The sorted set. build() replaces all; the order of the records depends on the calls so far alone.
 class RowSet {
@@ -157,6 +164,7 @@ public:
     /// Kills the records of all boxes that were handed to build() with the proxy `killed`: room for put().
     void make_holes();
 
+    /// What searches read, until the set changes.
     [[nodiscard]] RowView view() const;
     /// Of a record that is not killed.
     [[nodiscard]] Aabb box(std::size_t i) const {

@@ -237,7 +237,7 @@ template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
                        std::uint32_t* HWY_RESTRICT table) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        if (HWY_LIKELY(count == Wide::lanes)) {
+        if (HWY_LIKELY(count == Wide::lanes)) {  // of a known length: one store
             std::memcpy(keys + i, counters, Wide::lanes * sizeof *counters);
         } else {
             std::memcpy(keys + i, counters, count * sizeof *counters);

@@ -30,15 +30,13 @@ float longest_side(const Aabb& box) {
 }
 
 BoxStatistics look_at(const AnyStructure& structure, BoxUse use) {
+    if (count_decides(structure.size(), use)) return {.boxes = structure.size(), .use = use};
     std::vector<Move> boxes;
-    if (!count_decides(structure.size(), use)) {
-        structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
-            boxes.push_back({p, box});
-            return true;
-        });
-        return statistics_of(boxes, use);
-    }
-    return {.boxes = structure.size(), .use = use};
+    structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
+        boxes.push_back({p, box});
+        return true;
+    });
+    return statistics_of(boxes, use);
 }
 
 }  // namespace
