@@ -143,10 +143,9 @@ HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, T
                 order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
             turned.read_copies(boxes.data(), order.data());
         }
-        if constexpr (std::is_same_v<Row, Move>) {  // which may lie in runs, too short for a processor to foresee
-            const char* const ahead = reinterpret_cast<const char*>(boxes.data() + i) + 2048;
-            for (std::size_t b = 0; b < lanes * sizeof(Row); b += 64) __builtin_prefetch(ahead + b);
-        }
+        // Processors that foresee this begin too late, and not at all in short runs.
+        const char* const ahead = reinterpret_cast<const char*>(boxes.data() + i) + 2048;
+        for (std::size_t b = 0; b < lanes * sizeof(Row); b += 64) __builtin_prefetch(ahead + b);
         auto counter = first_counter;
         hn::Vec<Wide::Tag> t[3];
         for (std::size_t a = 0; a < 3; ++a) {  // as RowLevel::cell()
@@ -187,11 +186,21 @@ HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, T
 template <class Row>
 std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t begin, std::size_t end,
                                      const std::array<float*, 6>& columns, Proxy* HWY_RESTRICT order) {
-    constexpr std::size_t lanes = Wide::lanes, ahead = 32;
+    constexpr std::size_t lanes = Wide::lanes, ahead = 64;
     const Wide::Tag d;
     const auto last = static_cast<std::uint32_t>(boxes.size() - 1);
     hn::Vec<Wide::Tag> reach[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (std::size_t i = begin; i < end; i += lanes) {
+    const auto turn = [&](Turned<Row>& turned, const std::uint32_t* places) HWY_ATTR {
+        const hn::RebindToUnsigned<Wide::Tag> du;
+        if (HWY_UNLIKELY(!hn::AllFalse(du, hn::Eq(hn::LoadU(du, places), hn::Set(du, last))))) {
+            turned.read_copies(boxes.data(), places);
+        } else {
+            turned.read(boxes.data(), places);
+        }
+        for (std::size_t a = 0; a < 3; ++a) reach[a] = hn::Max(reach[a], hn::Sub(turned.hi(a).v, turned.lo(a).v));
+    };
+    std::size_t i = begin;
+    for (; i + lanes <= end; i += lanes) {
         if (i + ahead + lanes <= end) {
             for (std::size_t k = 0; k < lanes; ++k) {
                 const char* box = reinterpret_cast<const char*>(boxes.data() + order[i + ahead + k]);
@@ -199,30 +208,22 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
                 __builtin_prefetch(box + sizeof(Row) - 1);
             }
         }
-        std::array<std::uint32_t, lanes> mine;
-        bool any_last = false;
-        for (std::size_t k = 0; k < lanes; ++k) {
-            mine[k] = order[std::min(i + k, end - 1)];
-            any_last |= mine[k] == last;
-        }
         Turned<Row> turned;
-        if (HWY_UNLIKELY(any_last)) {
-            turned.read_copies(boxes.data(), mine.data());
-        } else {
-            turned.read(boxes.data(), mine.data());
-        }
-        for (std::size_t a = 0; a < 3; ++a) reach[a] = hn::Max(reach[a], hn::Sub(turned.hi(a).v, turned.lo(a).v));
-        if (i + lanes <= end) {
-            turned.store_proxies(order + i);
-            for (std::size_t k = 0; k < 6; ++k)  // one zero, not two
-                ((k < 3 ? turned.lo(k) : turned.hi(k - 3)) + Wide::set(0)).store(columns[k] + i);
-        } else {
-            for (std::size_t k = 0; i + k < end; ++k) {
-                const Aabb& box = box_of(boxes[mine[k]]);
-                order[i + k] = proxy_of(boxes[mine[k]], mine[k]);
-                const float bounds[6] = {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
-                for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c] + 0.0f;
-            }
+        turn(turned, order + i);
+        turned.store_proxies(order + i);
+        for (std::size_t k = 0; k < 6; ++k)  // one zero, not two
+            ((k < 3 ? turned.lo(k) : turned.hi(k - 3)) + Wide::set(0)).store(columns[k] + i);
+    }
+    if (i < end) {
+        std::array<std::uint32_t, lanes> rest;
+        for (std::size_t k = 0; k < lanes; ++k) rest[k] = order[std::min(i + k, end - 1)];
+        Turned<Row> turned;
+        turn(turned, rest.data());
+        for (std::size_t k = 0; i + k < end; ++k) {
+            const Aabb& box = box_of(boxes[rest[k]]);
+            order[i + k] = proxy_of(boxes[rest[k]], rest[k]);
+            const float bounds[6] = {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
+            for (std::size_t c = 0; c < 6; ++c) columns[c][i + k] = bounds[c] + 0.0f;
         }
     }
     std::array<float, 3> longest;
