@@ -15,6 +15,9 @@ float longest_side(const Aabb& box) {
 
 using Range = RowSample::Range;
 
+/// Ranks follow from so many of a sample: to find these takes most of the time.
+constexpr std::size_t ranked = 256;
+
 /// The value that a share of them do not exceed. Changes their order.
 float value_at(std::vector<float>& values, double share) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -70,8 +73,6 @@ template <class Row> void take_sample(std::span<const Row> boxes, std::size_t mo
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
     }
     if (sample.sides.empty()) return;
-    // Ranks follow from fewer of them: to find these takes most of the time.
-    constexpr std::size_t ranked = 256;
     const std::size_t step = (sample.sides.size() + ranked - 1) / ranked;
     std::vector<float>& some = sample.some;
     some.clear();
@@ -147,20 +148,30 @@ std::array<int, 3> axes_for(const RowSample& sample) {
     return {longest, (longest + 1) % 3, (longest + 2) % 3};
 }
 
+/// What levels are laid out by.
+struct Layout {
+    double cells_a_box = 0;
+    double taken = 1;      ///< of the space that boxes lie in: the share in which they are
+    bool by_list = false;  ///< rows in a list
+};
+
+bool is_sparse(const RowSample& sample) {
+    return spacing_of(sample, static_cast<double>(sample.boxes), sample.most_sides) > 2 * double{sample.most_sides};
+}
+
 /// All levels but the last, which takes what is larger than all of the sample.
-void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit& fit) {
-    fit.axis = axes_for(sample);
+void lay_out(const RowGridSettings& settings, const RowSample& sample, const Layout& layout, RowFit& fit) {
+    fit.levels.clear();
     // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
     const double most_sides = sample.most_sides, many_sides = sample.many_sides;
-    const double spacing = spacing_of(sample, static_cast<double>(sample.boxes), sample.most_sides);
-    const bool sparse = spacing > 2 * most_sides;
-    const bool by_list = settings.rows == RowGridSettings::Rows::List ||
-                         (settings.rows == RowGridSettings::Rows::Chosen && sparse && sample.spread_share < 0.3f);
+    const auto spacing = [&](double count, float side) { return spacing_of(sample, count / layout.taken, side); };
+    const double all_spacing = spacing(static_cast<double>(sample.boxes), sample.most_sides);
     // Next to boxes on one plane there is but one row that they reach into: fewer of them shall.
     const auto wide = std::count_if(sample.ranges.begin(), sample.ranges.end(),
                                     [&](const Range& range) { return range.length > 4 * most_sides; });
     const double share = settings.side_share * (wide < 3 ? 1.25 : 1);
-    double cell = std::max(std::min(share * most_sides, std::max(2 * spacing, many_sides)), by_list ? 0 : spacing);
+    double cell =
+        std::max(std::min(share * most_sides, std::max(2 * all_spacing, many_sides)), layout.by_list ? 0 : all_spacing);
     if (settings.cell > 0) cell = settings.cell;
     if (!(cell > 1e-30)) cell = 1;
 
@@ -175,18 +186,73 @@ void add_levels(const RowGridSettings& settings, const RowSample& sample, RowFit
         below = within;
         RowLevel level;
         level.limit = static_cast<float>(limit);
-        if (by_list) {
+        if (layout.by_list) {
             level.listed = true;
             level.edge = limit * (1 + 0x1p-10);
             for (std::size_t a = 0; a < 3; ++a) level.origin[a] = sample.ranges[a].from;
         } else {
-            const double most = std::min(double{settings.cells_a_box} * count + 64, 0x1p22);
+            const double most = std::min(layout.cells_a_box * count + 64, 0x1p22);
             // Room for the roundings of cell(): 2^-22 of a cell for each of some thousand rows.
-            const double edge = std::max(limit, spacing_of(sample, count, static_cast<float>(limit))) * (1 + 0x1p-9);
+            const double edge = std::max(limit, spacing(count, static_cast<float>(limit))) * (1 + 0x1p-9);
             divide(level, sample, fit.axis, edge, std::max(settings.cells_along, 0.01f), most);
         }
         fit.levels.push_back(level);
     }
+}
+
+/// How many others of its level share a cube with a box, in the mean: cells that follow each other in a row, as many as
+/// make it as long as rows are apart. That is in proportion to the time of a search.
+double crowd_of(RowSample& sample, const RowFit& fit) {
+    const std::size_t step = (sample.corners.size() + ranked - 1) / ranked;
+    std::vector<std::uint64_t>& cubes = sample.cubes;
+    cubes.clear();
+    for (std::size_t i = 0; i < sample.corners.size(); i += step) {
+        std::size_t k = 0;
+        while (k + 1 < fit.levels.size() && !(sample.sides[i] <= fit.levels[k].limit)) ++k;
+        const RowLevel& level = fit.levels[k];
+        std::uint64_t cube = k;
+        for (const int axis : {fit.axis[1], fit.axis[2], fit.axis[0]}) {
+            const auto a = static_cast<std::size_t>(axis);
+            const float edges = axis == fit.axis[0] ? level.limit * level.per_cell[a] : 1;
+            const auto cell = static_cast<float>(level.cell(axis, sample.corners[i][a]));
+            cube = cube << 20 | static_cast<std::uint64_t>(cell / std::max(edges, 1.0f));
+        }
+        cubes.push_back(cube);
+    }
+    std::sort(cubes.begin(), cubes.end());
+    double together = 0;
+    for (auto from = cubes.begin(); from != cubes.end();) {
+        const auto to = std::upper_bound(from, cubes.end(), *from);
+        const auto count = static_cast<double>(to - from);
+        together += count * (count - 1);
+        from = to;
+    }
+    const auto seen = static_cast<double>(cubes.size());
+    return together / (seen * seen) * static_cast<double>(sample.boxes);
+}
+
+/// A table, unless most of it would be empty and the rest too full.
+void add_levels(const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
+    using Rows = RowGridSettings::Rows;
+    fit.axis = axes_for(sample);
+    const Layout table{.cells_a_box = settings.cells_a_box};
+    lay_out(settings, sample, settings.rows == Rows::List ? Layout{.by_list = true} : table, fit);
+    if (settings.rows == Rows::List || sample.spread_share > 0.5f) return;
+
+    // Measured: boxes in a table take 12 ns each, and 0.2 for each other in a cube; five times as many cells 1 ns more,
+    // but 0.1 for another; rows in a list 50 to 80.
+    constexpr double much = 16, too_much = 500;
+    double crowd = crowd_of(sample, fit);
+    if (crowd <= much) return;
+    lay_out(settings, sample, {.cells_a_box = 5 * settings.cells_a_box, .taken = sample.spread_share}, fit);
+    const double finer = crowd_of(sample, fit);
+    if (finer > 0.7 * crowd) {
+        lay_out(settings, sample, table, fit);
+    } else {
+        crowd = finer;
+    }
+    if (settings.rows == Rows::Chosen && crowd > too_much && is_sparse(sample))
+        lay_out(settings, sample, {.by_list = true}, fit);
 }
 
 template <class Row>

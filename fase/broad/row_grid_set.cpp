@@ -239,7 +239,8 @@ std::size_t RowSet::bytes() const {
            table_.capacity() * sizeof(std::uint32_t) + rows_.capacity() * sizeof(ListedRow) +
            fit_.levels.capacity() * sizeof(RowLevel) +
            (items_.capacity() + items_scratch_.capacity()) * sizeof(RowItem) +
-           sample_.corners.capacity() * (sizeof sample_.corners[0] + 4 * sizeof(float)) + sample_.taken.capacity();
+           sample_.corners.capacity() * (sizeof sample_.corners[0] + 4 * sizeof(float)) + sample_.taken.capacity() +
+           sample_.cubes.capacity() * sizeof(std::uint64_t);
 }
 
 std::string RowSet::broken_record(const RowLevel& level, std::size_t i) const {

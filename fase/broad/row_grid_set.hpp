@@ -85,6 +85,7 @@ struct RowSample {
     std::array<Range, 3> ranges;
     float spread_share = 1;  ///< of the places that as many boxes spread evenly would take: how many are taken
     std::vector<std::uint8_t> taken;
+    std::vector<std::uint64_t> cubes;  ///< where some lie
 };
 
 /// The box of a row of a list, whichever kind of list it is.

@@ -267,30 +267,45 @@ TEST(RowGrid, NoticesAtOnceWhenAllBoxesLeapAway) {
     EXPECT_EQ(sorted_pairs(grid), judged(boxes));
 }
 
-/// Clusters of a hundred boxes, somewhere in a world of 1000 km.
-std::vector<Move> far_clusters(std::size_t count, std::uint64_t seed) {
+/// Clusters somewhere in a large world: of so many boxes each, spread over `spread` metres.
+std::vector<Move> far_clusters(std::size_t count, std::uint64_t seed, std::size_t together, float spread,
+                               float half_world = 5e5f) {
     Random random(seed);
     std::vector<Move> boxes;
     Vec3 at;
     for (Proxy p = 0; p < count; ++p) {
-        if (p % 100 == 0) at = place(random, -5e5f, 5e5f);
-        const Vec3 lo = at + place(random, 0, 6);
+        if (p % together == 0) at = place(random, -half_world, half_world);
+        const Vec3 lo = at + place(random, 0, spread);
         boxes.push_back({p, {lo, lo + place(random, 0.5f, 1.5f)}});
     }
     return boxes;
 }
 
 TEST(RowGrid, ListsTheRowsOfAWorldThatIsNearlyEmpty) {
-    const std::vector<Move> boxes = far_clusters(6000, 7);
+    const std::vector<Move> boxes = far_clusters(6000, 7, 1000, 13);
     const RowGrid grid = grid_of(boxes);
     EXPECT_EQ(grid.broken_invariant(), "");
     EXPECT_EQ(sorted_pairs(grid), judged(boxes));
-    EXPECT_LT(stats_of(grid).largest_leaf, 64u) << "a cluster of a hundred lies in one cell";
+    EXPECT_LT(stats_of(grid).largest_leaf, 64u) << "a cluster of a thousand lies in one cell";
+}
+
+TEST(RowGrid, HasMoreCellsWhereBoxesCrowdInSomeOfThem) {
+    // A thousandth of the world: with four cells for five boxes, those that are not empty would hold many.
+    const std::vector<Move> boxes = far_clusters(20000, 12, 2500, 18, 90);
+    const RowGrid grid = grid_of(boxes);
+    EXPECT_EQ(grid.broken_invariant(), "");
+    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+    const StructureStats stats = stats_of(grid);
+    EXPECT_LT(stats.entries, 16 * stats.leaves);
+    EXPECT_LE(grid.bytes(), 84 * boxes.size());
+    const StructureStats fewer = stats_of(grid_of(boxes, {.cells_a_box = 0.16f}));
+    EXPECT_GT(fewer.entries, 40 * fewer.leaves) << "the grid above has no more cells than usual";
 }
 
 TEST(RowGrid, TakesMemoryByTheNumberOfBoxesWhereverTheyAre) {
     Random random(8);
-    std::vector<std::vector<Move>> worlds{gas(20000, 8), far_clusters(20000, 9), far_clusters(20000, 10)};
+    std::vector<std::vector<Move>> worlds{gas(20000, 8), far_clusters(20000, 9, 1000, 13),
+                                          far_clusters(20000, 10, 100, 6)};
     for (Move& m : worlds[2]) {  // dust over 1000 km
         const Vec3 lo = place(random, -5e5f, 5e5f);
         m.box = {lo, lo + Vec3{1, 1, 1}};
