@@ -28,6 +28,8 @@ using fase::HWY_NAMESPACE::Wide;
 //
 #include "fase/broad/row_grid_test-inl.hpp"
 //
+#include "fase/broad/row_grid_asked-inl.hpp"
+//
 #include "fase/broad/row_grid_pairs-inl.hpp"
 }  // namespace fase::broad::row_grid::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,67 +1,6 @@
 /// Which records each box of a set is tested against, for one SIMD target. Included inside its namespace by
 /// row_grid_kernels.cpp, hence no #pragma once and no includes.
 
-/// Calls test(begin, end) for ranges of the level's records that hold all that overlap the box.
-template <class Test>
-HWY_INLINE void for_ranges(const RowView& set, const RowLevel& level, const float* lo, const float* hi,
-                           const Columns& c, Test&& test) {
-    const auto [ax, ay, az] = set.axis;
-    const auto from = [&](int a) { return lo[a] - level.reach[static_cast<std::size_t>(a)]; };
-    if (level.listed) {
-        const std::int32_t y0 = level.listed_cell(ay, from(ay)), y1 = level.listed_cell(ay, hi[ay]);
-        const std::int32_t z0 = level.listed_cell(az, from(az)), z1 = level.listed_cell(az, hi[az]);
-        const float x0 = from(ax), x1 = hi[ax];
-        const ListedRow* const end = set.rows.data() + level.first_row + level.row_count;
-        const auto find = [&](const ListedRow* begin, std::int32_t y, std::int32_t z) {
-            return std::lower_bound(begin, end, z, [y](const ListedRow& row, std::int32_t v) {
-                return row.y < y || (row.y == y && row.z < v);
-            });
-        };
-        for (const ListedRow* row = find(set.rows.data() + level.first_row, y0, z0); row < end && row->y <= y1;) {
-            if (row->z < z0) {
-                row = find(row, row->y, z0);
-            } else if (row->z > z1) {
-                row = find(row, row->y + 1, z0);
-            } else {
-                const float* const last = c.lo_x + row[1].first;
-                const float* const begin = std::lower_bound(c.lo_x + row->first, last, x0);
-                const float* const stop = std::upper_bound(begin, last, x1);
-                test(static_cast<std::size_t>(begin - c.lo_x), static_cast<std::size_t>(stop - c.lo_x));
-                ++row;
-            }
-        }
-        return;
-    }
-    const std::uint32_t y0 = level.cell(ay, from(ay)), y1 = level.cell(ay, hi[ay]);
-    const std::uint32_t z0 = level.cell(az, from(az)), z1 = level.cell(az, hi[az]);
-    const std::uint32_t x0 = level.cell(ax, from(ax)), x1 = level.cell(ax, hi[ax]) + 1;
-    const std::uint32_t step_y = level.stride[static_cast<std::size_t>(ay)],
-                        step_z = level.stride[static_cast<std::size_t>(az)];
-    for (std::uint32_t y = y0; y <= y1; ++y) {
-        const std::uint32_t* row = set.table + level.table + y * step_y + z0 * step_z;
-        for (std::uint32_t z = z0; z <= z1; ++z, row += step_z) test(row[x0], row[x1]);
-    }
-}
-
-/// Each of the records against all levels below theirs.
-inline void ask_lower_levels(const RowView& set, std::size_t level_index, const Columns& c, std::size_t begin,
-                             std::size_t end, PairBlock& block) {
-    Writer out(block);
-    for (std::size_t i = begin; i < end; ++i) {
-        const auto asker = [&] { return Asker(c, i); };
-        const float lo[3] = {set.lo[0][i], set.lo[1][i], set.lo[2][i]},
-                    hi[3] = {set.hi[0][i], set.hi[1][i], set.hi[2][i]};
-        for (std::size_t k = 0; k < level_index; ++k) {
-            const RowLevel& level = set.levels[k];
-            if (level.count == 0) continue;
-            for_ranges(set, level, lo, hi, c, [&](std::size_t from, std::size_t to) {
-                if (from >= to) return;
-                test_range<Side::Unknown, Side::Unknown>(asker, c, from, to, out);
-            });
-        }
-    }
-}
-
 /// Where the rows around a box's own lie, in cells of the table.
 struct Neighbours {
     const std::uint32_t* table;      // first records of the level's cells
@@ -95,18 +34,6 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
     const WordTag dw;
     const hn::RebindToSigned<FloatTag> di;
     const auto [ax, ay, az] = set.axis;
-    /// As RowLevel::cell(), along one axis.
-    struct Cells {
-        Floats origin, per_cell, last;
-        Cells(const RowLevel& l, int axis)
-            : origin(hn::Set(FloatTag(), l.origin[static_cast<std::size_t>(axis)])),
-              per_cell(hn::Set(FloatTag(), l.per_cell[static_cast<std::size_t>(axis)])),
-              last(hn::Set(FloatTag(), l.last[static_cast<std::size_t>(axis)])) {}
-        HWY_INLINE hn::Vec<hn::RebindToSigned<FloatTag>> of(Floats v) const {
-            const auto t = hn::Max(hn::Mul(hn::Sub(v, origin), per_cell), hn::Zero(FloatTag()));
-            return hn::ConvertTo(hn::RebindToSigned<FloatTag>(), hn::Min(t, last));
-        }
-    };
     const Cells x(level, ax), y(level, ay), z(level, az);
     const auto reach = hn::Set(d, level.reach[static_cast<std::size_t>(ax)]);
     const auto step_y = hn::Set(di, static_cast<std::int32_t>(level.stride[static_cast<std::size_t>(ay)])),
@@ -359,51 +286,5 @@ void find_own_pairs_wide(const RowView& set, std::size_t begin, std::size_t end,
             find_table_pairs(set, level, from, to, c, block);
         }
         if (k > 0) ask_lower_levels(set, k, c, from, to, block);
-    }
-}
-
-/// Without branches: this is asked of every asker.
-inline bool has_nan(const Aabb& box) {
-    const bool lo = (box.lo.x != box.lo.x) | (box.lo.y != box.lo.y) | (box.lo.z != box.lo.z);
-    return lo | (box.hi.x != box.hi.x) | (box.hi.y != box.hi.y) | (box.hi.z != box.hi.z);
-}
-
-/// The records from `begin` to `end` that a box overlaps, but for itself and for smaller askers.
-template <class MakeAsker>
-HWY_INLINE void ask_range(const MakeAsker& make_asker, Proxy mine, std::span<const std::uint8_t> is_asker,
-                          const Columns& c, std::size_t begin, std::size_t end, Writer& out) {
-    constexpr std::size_t vectors = 512 / width;
-    for (std::size_t j = begin; j < end;) {
-        out.make_room<vectors>();
-        const Asker asker = make_asker();
-        for (const std::size_t stop = std::min(end, j + vectors * width); j < stop; j += width) {
-            std::uint32_t bits = asker.overlapped<Side::Unknown, Side::Unknown>(c, j);
-            bits &= first_bits(std::min(width, stop - j));
-            bits &= bits_of(hn::RebindMask(FloatTag(), hn::Ne(hn::LoadU(WordTag(), c.proxies + j), asker.proxy)));
-            if (HWY_UNLIKELY(!is_asker.empty())) {
-                for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
-                    const Proxy other = c.proxies[j + static_cast<unsigned>(std::countr_zero(rest))];
-                    if (other < mine && other < is_asker.size() && is_asker[other] != 0) bits &= ~(rest & (0 - rest));
-                }
-            }
-            out.add(asker.proxy, c.proxies + j, bits);
-        }
-    }
-}
-
-/// See row_grid::find_asked_pairs.
-void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& block) {
-    const Columns c(set);
-    Writer out(block);
-    for (const Move& m : askers.boxes) {
-        if (has_nan(m.box)) continue;  // touches nothing, and comparisons that are turned round would not see it
-        const auto asker = [&] { return Asker(m, set.axis); };
-        const float lo[3] = {m.box.lo.x, m.box.lo.y, m.box.lo.z}, hi[3] = {m.box.hi.x, m.box.hi.y, m.box.hi.z};
-        for (const RowLevel& level : set.levels) {
-            if (level.count == 0) continue;
-            for_ranges(set, level, lo, hi, c, [&](std::size_t begin, std::size_t end) {
-                ask_range(asker, m.proxy, askers.is_asker, c, begin, end, out);
-            });
-        }
     }
 }

@@ -114,17 +114,6 @@ struct Asker {
         hi_z = hn::Set(d, at[c.stride5]);
         proxy = hn::Set(WordTag(), c.proxies[i]);
     }
-    HWY_INLINE Asker(const Move& m, const std::array<int, 3>& axis) {
-        const FloatTag d;
-        Vec3 lo = m.box.lo, hi = m.box.hi;
-        minus_lo_x = hn::Neg(hn::Set(d, lo[axis[0]]));
-        minus_lo_y = hn::Neg(hn::Set(d, lo[axis[1]]));
-        minus_lo_z = hn::Neg(hn::Set(d, lo[axis[2]]));
-        hi_x = hn::Set(d, hi[axis[0]] + 0.0f);  // 0 where it is -0
-        hi_y = hn::Set(d, hi[axis[1]] + 0.0f);
-        hi_z = hn::Set(d, hi[axis[2]] + 0.0f);
-        proxy = hn::Set(WordTag(), m.proxy);
-    }
     /// Which of the records from j on the box overlaps, a bit each; none that have been killed.
     template <Side y, Side z> HWY_INLINE std::uint32_t overlapped(const Columns& c, std::size_t j) const {
         return ~negative_bits(gaps<y, z>(c, j)) & first_bits(width);

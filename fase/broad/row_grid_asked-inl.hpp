@@ -1,0 +1,241 @@
+/// Boxes that ask the records of a level, for one SIMD target. Included inside its namespace by row_grid_kernels.cpp,
+/// hence no #pragma once and no includes.
+
+/// As RowLevel::cell(), along one axis.
+struct Cells {
+    Floats origin, per_cell, last;
+    HWY_INLINE Cells(const RowLevel& level, int axis)
+        : origin(hn::Set(FloatTag(), level.origin[static_cast<std::size_t>(axis)])),
+          per_cell(hn::Set(FloatTag(), level.per_cell[static_cast<std::size_t>(axis)])),
+          last(hn::Set(FloatTag(), level.last[static_cast<std::size_t>(axis)])) {}
+    HWY_INLINE hn::Vec<hn::RebindToSigned<FloatTag>> of(Floats v) const {
+        const auto t = hn::Max(hn::Mul(hn::Sub(v, origin), per_cell), hn::Zero(FloatTag()));
+        return hn::ConvertTo(hn::RebindToSigned<FloatTag>(), hn::Min(t, last));
+    }
+};
+
+/// Boxes that ask, in columns: lower bounds along the rows and across them, then upper ones. `width` more may be read.
+struct AskerColumns {
+    std::array<const float*, 6> bounds;
+    const Proxy* proxies;
+    std::size_t count;
+    std::span<const std::uint8_t> is_asker;  // see Askers
+
+    [[nodiscard]] HWY_INLINE Asker operator[](std::size_t i) const {
+        const FloatTag d;
+        Asker asker;
+        asker.minus_lo_x = hn::Neg(hn::Set(d, bounds[0][i]));
+        asker.minus_lo_y = hn::Neg(hn::Set(d, bounds[1][i]));
+        asker.minus_lo_z = hn::Neg(hn::Set(d, bounds[2][i]));
+        asker.hi_x = hn::Set(d, bounds[3][i]);
+        asker.hi_y = hn::Set(d, bounds[4][i]);
+        asker.hi_z = hn::Set(d, bounds[5][i]);
+        asker.proxy = hn::Set(WordTag(), proxies[i]);
+        return asker;
+    }
+};
+constexpr std::size_t most_askers = 128;
+
+/// A range of records, and who is tested against it.
+struct AskedRange {
+    std::uint32_t begin, end, asker;
+};
+constexpr std::size_t most_ranges = 1024;
+
+/// Of the marked records from j on, those that are not the asker itself, nor smaller askers.
+HWY_INLINE std::uint32_t asked_of(const AskerColumns& askers, const Asker& asker, std::size_t i, const Columns& c,
+                                  std::size_t j, std::uint32_t bits) {
+    bits &= bits_of(hn::RebindMask(FloatTag(), hn::Ne(hn::LoadU(WordTag(), c.proxies + j), asker.proxy)));
+    if (HWY_UNLIKELY(!askers.is_asker.empty())) {
+        const Proxy mine = askers.proxies[i];
+        for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+            const Proxy other = c.proxies[j + static_cast<unsigned>(std::countr_zero(rest))];
+            if (other < mine && other < askers.is_asker.size() && askers.is_asker[other] != 0)
+                bits &= ~(rest & (0 - rest));
+        }
+    }
+    return bits;
+}
+
+/// An asker against all records of a range.
+HWY_INLINE void ask_range(const AskerColumns& askers, std::size_t i, const Columns& c, std::size_t begin,
+                          std::size_t end, Writer& out) {
+    constexpr std::size_t vectors = 512 / width;
+    for (std::size_t j = begin; j < end;) {
+        out.make_room<vectors>();
+        const Asker asker = askers[i];
+        for (const std::size_t stop = std::min(end, j + vectors * width); j < stop; j += width) {
+            const std::uint32_t bits = asker.overlapped<Side::Unknown, Side::Unknown>(c, j);
+            out.add(asker.proxy, c.proxies + j,
+                    asked_of(askers, asker, i, c, j, bits & first_bits(std::min(width, stop - j))));
+        }
+    }
+}
+
+/// Tests what has been listed: short ranges first, without a branch that depends on boxes.
+HWY_NOINLINE void ask_ranges(const AskerColumns& asking, const Columns& columns, std::span<AskedRange> ranges,
+                             PairBlock& block) {
+    const AskerColumns askers = asking;
+    const Columns c = columns;  // of their own: nothing that is written can be they
+    Writer out(block);
+    std::size_t with_long = 0;
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+        const AskedRange range = ranges[k];
+        std::size_t j = range.begin, count = range.end - range.begin;
+        if (HWY_UNLIKELY(count >= long_range)) {
+            ranges[with_long++] = range;
+            continue;
+        }
+        out.make_room<short_vectors>();
+        const Asker asker = askers[range.asker];
+        for (;;) {
+            const std::uint32_t bits =
+                asker.overlapped<Side::Unknown, Side::Unknown>(c, j) & first_bits(std::min(width, count));
+            out.add(asker.proxy, c.proxies + j, asked_of(askers, asker, range.asker, c, j, bits));
+            if (HWY_LIKELY(count <= width)) break;
+            count -= width;
+            j += width;
+        }
+    }
+    for (std::size_t k = 0; k < with_long; ++k)
+        ask_range(askers, ranges[k].asker, c, ranges[k].begin, ranges[k].end, out);
+}
+
+/// All askers, at most so many, against a level with a table.
+inline void ask_table(const RowView& set, const RowLevel& level, const AskerColumns& askers, const Columns& c,
+                      PairBlock& block) {
+    const FloatTag d;
+    const WordTag dw;
+    const hn::RebindToSigned<FloatTag> di;
+    const auto [ax, ay, az] = set.axis;
+    const Cells x(level, ax), y(level, ay), z(level, az);
+    const auto at = [](int axis) { return static_cast<std::size_t>(axis); };
+    const auto reach_x = hn::Set(d, level.reach[at(ax)]), reach_y = hn::Set(d, level.reach[at(ay)]),
+               reach_z = hn::Set(d, level.reach[at(az)]);
+    const std::uint32_t step_y = level.stride[at(ay)], step_z = level.stride[at(az)];
+    const auto steps_y = hn::Set(di, static_cast<std::int32_t>(step_y)),
+               steps_z = hn::Set(di, static_cast<std::int32_t>(step_z));
+    // By asker: the first cell, then how many along each axis; none for one that is inverted.
+    std::array<std::array<std::uint32_t, most_askers + width>, 4> cells;
+    for (std::size_t i = 0; i < askers.count; i += width) {
+        const auto bound = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, askers.bounds[k] + i); };
+        const auto store = [&](std::size_t k, auto v)
+                               HWY_ATTR { hn::StoreU(hn::BitCast(dw, v), dw, cells[k].data() + i); };
+        const auto x0 = x.of(hn::Sub(bound(0), reach_x)), y0 = y.of(hn::Sub(bound(1), reach_y)),
+                   z0 = z.of(hn::Sub(bound(2), reach_z));
+        const auto cells_of = [&](auto first, auto last) HWY_ATTR {
+            return hn::Max(hn::Add(hn::Sub(last, first), hn::Set(di, 1)), hn::Zero(di));
+        };
+        store(0, hn::Add(x0, hn::Add(hn::Mul(y0, steps_y), hn::Mul(z0, steps_z))));
+        store(1, cells_of(x0, x.of(bound(3))));
+        store(2, cells_of(y0, y.of(bound(4))));
+        store(3, cells_of(z0, z.of(bound(5))));
+    }
+    std::array<AskedRange, most_ranges> ranges;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < askers.count; ++i) {
+        const std::uint32_t* row_y = set.table + level.table + cells[0][i];
+        const std::uint32_t length = cells[1][i], rows_z = cells[3][i];
+        for (std::uint32_t rows_y = cells[2][i]; rows_y > 0; --rows_y, row_y += step_y) {
+            const std::uint32_t* row = row_y;
+            for (std::uint32_t k = 0; k < rows_z; ++k, row += step_z) {
+                ranges[count] = {row[0], row[length], i};
+                count += row[0] < row[length] ? 1 : 0;
+                if (HWY_UNLIKELY(count == most_ranges)) {
+                    ask_ranges(askers, c, ranges, block);
+                    count = 0;
+                }
+            }
+        }
+    }
+    ask_ranges(askers, c, std::span(ranges).first(count), block);
+}
+
+/// The same for a level whose rows stand in a list.
+inline void ask_list(const RowView& set, const RowLevel& level, const AskerColumns& askers, const Columns& c,
+                     PairBlock& block) {
+    const auto [ax, ay, az] = set.axis;
+    const auto reach = [&](int axis) { return level.reach[static_cast<std::size_t>(axis)]; };
+    const ListedRow* const end = set.rows.data() + level.first_row + level.row_count;
+    Writer out(block);
+    for (std::size_t i = 0; i < askers.count; ++i) {
+        const auto lo = [&](std::size_t k, int axis) { return askers.bounds[k][i] - reach(axis); };
+        const auto hi = [&](std::size_t k) { return askers.bounds[k + 3][i]; };
+        const std::int32_t y0 = level.listed_cell(ay, lo(1, ay)), y1 = level.listed_cell(ay, hi(1));
+        const std::int32_t z0 = level.listed_cell(az, lo(2, az)), z1 = level.listed_cell(az, hi(2));
+        const float x0 = lo(0, ax), x1 = hi(0);
+        const auto find = [&](const ListedRow* begin, std::int32_t y, std::int32_t z) {
+            return std::lower_bound(begin, end, z, [y](const ListedRow& row, std::int32_t v) {
+                return row.y < y || (row.y == y && row.z < v);
+            });
+        };
+        for (const ListedRow* row = find(set.rows.data() + level.first_row, y0, z0); row < end && row->y <= y1;) {
+            if (row->z < z0) {
+                row = find(row, row->y, z0);
+            } else if (row->z > z1) {
+                row = find(row, row->y + 1, z0);
+            } else {
+                const float* const last = c.lo_x + row[1].first;
+                const float* const begin = std::lower_bound(c.lo_x + row->first, last, x0);
+                const float* const stop = std::upper_bound(begin, last, x1);
+                ask_range(askers, i, c, static_cast<std::size_t>(begin - c.lo_x),
+                          static_cast<std::size_t>(stop - c.lo_x), out);
+                ++row;
+            }
+        }
+    }
+}
+
+inline void ask_level(const RowView& set, const RowLevel& level, const AskerColumns& askers, const Columns& c,
+                      PairBlock& block) {
+    if (level.count == 0) return;
+    level.listed ? ask_list(set, level, askers, c, block) : ask_table(set, level, askers, c, block);
+}
+
+/// Each of the records against all levels below theirs.
+inline void ask_lower_levels(const RowView& set, std::size_t level_index, const Columns& c, std::size_t begin,
+                             std::size_t end, PairBlock& block) {
+    for (std::size_t i = begin; i < end; i += most_askers) {
+        const AskerColumns askers{{c.lo_x + i, c.lo_y() + i, c.lo_z() + i, c.hi_x() + i, c.hi_y() + i, c.hi_z() + i},
+                                  c.proxies + i,
+                                  std::min(most_askers, end - i),
+                                  {}};
+        for (std::size_t k = 0; k < level_index; ++k) ask_level(set, set.levels[k], askers, c, block);
+    }
+}
+
+/// Without branches: this is asked of every asker.
+inline bool has_nan(const Aabb& box) {
+    const bool lo = (box.lo.x != box.lo.x) | (box.lo.y != box.lo.y) | (box.lo.z != box.lo.z);
+    return lo | (box.hi.x != box.hi.x) | (box.hi.y != box.hi.y) | (box.hi.z != box.hi.z);
+}
+
+/// See row_grid::find_asked_pairs.
+void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& block) {
+    if (set.levels.empty()) return;
+    const Columns c(set);
+    std::array<std::array<float, most_askers + width>, 6> bounds;
+    std::array<Proxy, most_askers> proxies;
+    for (std::size_t next = 0; next < askers.boxes.size();) {
+        std::size_t count = 0;
+        for (; next < askers.boxes.size() && count < most_askers; ++next) {
+            const Move& m = askers.boxes[next];
+            Vec3 lo = m.box.lo, hi = m.box.hi;
+            for (std::size_t k = 0; k < 3; ++k) {
+                bounds[k][count] = lo[set.axis[k]];
+                bounds[k + 3][count] = hi[set.axis[k]] + 0.0f;  // 0 where it is -0
+            }
+            proxies[count] = m.proxy;
+            // One with a NaN touches nothing, and comparisons that are turned round would not see it.
+            count += has_nan(m.box) ? 0 : 1;
+        }
+        for (std::array<float, most_askers + width>& bound : bounds)
+            std::fill_n(bound.begin() + static_cast<std::ptrdiff_t>(count), width, 0.0f);
+        const AskerColumns asking{{bounds[0].data(), bounds[1].data(), bounds[2].data(), bounds[3].data(),
+                                   bounds[4].data(), bounds[5].data()},
+                                  proxies.data(),
+                                  count,
+                                  askers.is_asker};
+        for (const RowLevel& level : set.levels) ask_level(set, level, asking, c, block);
+    }
+}
