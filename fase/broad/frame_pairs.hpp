@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "fase/broad/row_deal.hpp"
 #include "fase/broad/row_grid_set.hpp"
 #include "fase/broad/stats.hpp"
 #include "fase/core/tasks.hpp"
@@ -19,20 +18,19 @@ public:
     /// Sorts the boxes, which are known by their place in the list; it is not needed any more afterwards. False, and
     /// there is nothing to find, when one of them is no ordinary box (see is_ordinary()). O(n).
     [[nodiscard]] bool sort(TaskRunner& tasks, std::span<const Aabb> boxes) {
-        return sorted_.build(boxes, settings_, &deal_, &tasks);
+        return sorted_.build(boxes, settings_, &tasks);
     }
     /// Appends each pair once, smaller place first, in the same order for any number of threads. O(n + pairs) for boxes
     /// that are spread. Safe from many threads.
     void find(TaskRunner& tasks, std::vector<Pair>& out) const;
 
     [[nodiscard]] std::size_t size() const { return sorted_.size(); }
-    [[nodiscard]] std::size_t bytes() const { return sizeof *this + sorted_.bytes() + deal_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const { return sizeof *this + sorted_.bytes(); }
     [[nodiscard]] StructureStats stats() const;
 
 private:
     RowGridSettings settings_;
     RowSet sorted_;
-    RowDeal deal_;
 };
 
 }  // namespace fase::broad

@@ -24,9 +24,9 @@ HWY_BEFORE_NAMESPACE();
 namespace fase::broad::row_grid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using fase::HWY_NAMESPACE::Wide;
-#include "fase/broad/row_grid_sort-inl.hpp"
-//
 #include "fase/broad/row_grid_test-inl.hpp"
+//
+#include "fase/broad/row_grid_sort-inl.hpp"
 //
 #include "fase/broad/row_grid_asked-inl.hpp"
 //
@@ -39,8 +39,10 @@ namespace fase::broad::row_grid {
 
 HWY_EXPORT(count_moves_wide);
 HWY_EXPORT(count_list_wide);
-HWY_EXPORT(deal_moves_wide);
-HWY_EXPORT(deal_list_wide);
+HWY_EXPORT(moves_keys_wide);
+HWY_EXPORT(list_keys_wide);
+HWY_EXPORT(keys_below_wide);
+HWY_EXPORT(select_keys_wide);
 HWY_EXPORT(gather_moves_wide);
 HWY_EXPORT(gather_list_wide);
 HWY_EXPORT(find_own_pairs_wide);
@@ -52,11 +54,18 @@ Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys,
 Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return HWY_DYNAMIC_DISPATCH(count_list_wide)(boxes, fit, keys, table);
 }
-Counted deal_boxes(std::span<const Move> boxes, Proxy first, const RowFit& fit, Hand& hand) {
-    return HWY_DYNAMIC_DISPATCH(deal_moves_wide)(boxes, first, fit, hand);
+Counted find_keys(std::span<const Move> boxes, const RowFit& fit, float* keys) {
+    return HWY_DYNAMIC_DISPATCH(moves_keys_wide)(boxes, fit, keys);
 }
-Counted deal_boxes(std::span<const Aabb> boxes, Proxy first, const RowFit& fit, Hand& hand) {
-    return HWY_DYNAMIC_DISPATCH(deal_list_wide)(boxes, first, fit, hand);
+Counted find_keys(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
+    return HWY_DYNAMIC_DISPATCH(list_keys_wide)(boxes, fit, keys);
+}
+std::size_t keys_below(std::span<const float> keys, std::uint32_t counter) {
+    return HWY_DYNAMIC_DISPATCH(keys_below_wide)(keys, counter);
+}
+void select_keys(std::span<const float> keys, std::uint32_t first, std::uint32_t last, std::size_t count, float* places,
+                 float* selected) {
+    HWY_DYNAMIC_DISPATCH(select_keys_wide)(keys, first, last, count, places, selected);
 }
 std::array<float, 3> gather_boxes(std::span<const Move> boxes, std::size_t begin, std::size_t end,
                                   const std::array<float*, 6>& columns, Proxy* order) {

@@ -41,10 +41,6 @@ struct Askers {
     std::span<const std::uint8_t> is_asker;
 };
 
-/// So many boxes, with all that is known of them, do not fit into the caches near a core: what is wanted soon is asked
-/// for ahead.
-inline constexpr std::size_t past_caches = std::size_t{1} << 17;
-
 struct Counted {
     std::size_t outside = 0;  ///< about so many boxes lie outside of their level's cells by more than the size of one
     bool odd = false;         ///< one of them is not ordinary
@@ -59,50 +55,14 @@ struct Counted {
 Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table);
 Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table);
 
-/// Where a thread deals boxes to: runs of places, each of one slab. The slab of a box is that of its counter: its
-/// number without the last `shift` bits.
-class Hand {
-public:
-    static constexpr std::uint32_t run_length = 256, most_slabs = 256;
-    struct Run {
-        std::uint32_t slab, begin;
-    };
-
-    Move* to = nullptr;
-    unsigned shift = 0;
-    /// By slab: where its next box goes, unless the run is full: see is_full().
-    std::array<std::uint32_t, most_slabs> next{};
-
-    /// Takes runs of `places` from `first` on.
-    void begin(Move* places, std::uint32_t first, unsigned counter_shift) {
-        to = places;
-        shift = counter_shift;
-        first_ = free_ = first;
-        next.fill(first);
-        runs_.clear();
-    }
-    [[nodiscard]] bool is_full(std::uint32_t place) const { return (place - first_) % run_length == 0; }
-    /// The first place of another run.
-    [[gnu::noinline]] std::uint32_t take_run(std::uint32_t slab) {
-        runs_.push_back({slab, free_});
-        free_ += run_length;
-        return runs_.back().begin;
-    }
-    /// In the order in which they were taken.
-    [[nodiscard]] std::span<const Run> runs() const { return runs_; }
-    /// Behind the last box of a run.
-    [[nodiscard]] std::uint32_t end_of(const Run& run) const {
-        const std::uint32_t end = next[run.slab];
-        return run.begin < end && end < run.begin + run_length ? end : run.begin + run_length;
-    }
-
-private:
-    std::uint32_t first_ = 0, free_ = 0;
-    std::vector<Run> runs_;
-};
-/// Puts boxes where their slabs are dealt, with their proxies: in a list those of the places from `first` on.
-Counted deal_boxes(std::span<const Move> boxes, Proxy first, const RowFit& fit, Hand& hand);
-Counted deal_boxes(std::span<const Aabb> boxes, Proxy first, const RowFit& fit, Hand& hand);
+/// The first half of that: for boxes that several threads share out.
+Counted find_keys(std::span<const Move> boxes, const RowFit& fit, float* keys);
+Counted find_keys(std::span<const Aabb> boxes, const RowFit& fit, float* keys);
+/// How many of the keys are smaller than a counter.
+std::size_t keys_below(std::span<const float> keys, std::uint32_t counter);
+/// Writes the keys from `first` to before `last`, and where they stand, in order: `count` of them, no more and no less.
+void select_keys(std::span<const float> keys, std::uint32_t first, std::uint32_t last, std::size_t count, float* places,
+                 float* selected);
 
 /// Puts box order[i] into place i of the columns, for `begin` <= i < `end`, and its proxy over order[i]. Returns the
 /// longest sides of these boxes. The proxies of a list of boxes are their places in it.

@@ -131,10 +131,6 @@ struct RecordSpan {
     std::uint32_t begin = 0, end = 0;
 };
 
-/// See row_deal.hpp.
-class RowDeal;
-/// See row_deal.hpp.
-struct RowSlab;
 namespace row_grid {
 /// See row_grid_kernels.hpp.
 struct Counted;
@@ -144,16 +140,13 @@ struct Counted;
 class RowSet {
 public:
     /// The boxes must be ordinary (see is_ordinary()). When one is not, nothing is stored and the answer is false.
-    /// What is stored does not depend on `deal`, with which many are sorted faster, nor on `tasks`, which take part in
-    /// that.
-    bool build(std::span<const Move> boxes, const RowGridSettings& settings, RowDeal* deal = nullptr,
-               TaskRunner* tasks = nullptr) {
-        return build_from(boxes, settings, deal, tasks);
+    /// What is stored does not depend on `tasks`, which share the work where boxes are many.
+    bool build(std::span<const Move> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, tasks);
     }
     /// The same for a list: the proxies are the places in it.
-    bool build(std::span<const Aabb> boxes, const RowGridSettings& settings, RowDeal* deal = nullptr,
-               TaskRunner* tasks = nullptr) {
-        return build_from(boxes, settings, deal, tasks);
+    bool build(std::span<const Aabb> boxes, const RowGridSettings& settings, TaskRunner* tasks = nullptr) {
+        return build_from(boxes, settings, tasks);
     }
 
     /// Takes a record out until the next build(): its place stays, its box overlaps nothing. O(1).
@@ -205,19 +198,28 @@ private:
         std::uint32_t x, order;
     };
     std::vector<RowItem> items_, items_scratch_;  // scratch of sort_listed
-    std::vector<std::array<float, 3>> reaches_;   // scratch: by slab and level
-    RowSample sample_;                            // scratch of fit
+    /// Some records of a level, which are fetched in one go.
+    struct Piece {
+        std::size_t level;
+        RecordSpan records;
+        std::array<float, 3> reach{};
+    };
+    std::vector<Piece> pieces_;          // scratch of fetch
+    std::vector<std::uint32_t> bounds_;  // scratch of place_shared
+    RowSample sample_;                   // scratch of fit
 
     template <class Row>
-    bool build_from(std::span<const Row> boxes, const RowGridSettings& settings, RowDeal* deal, TaskRunner* tasks);
+    bool build_from(std::span<const Row> boxes, const RowGridSettings& settings, TaskRunner* tasks);
     template <class Row> void fit(std::span<const Row> boxes, const RowGridSettings& settings);
     void make_room();
-    template <class Row> row_grid::Counted count(std::span<const Row> boxes, const RowSlab& slab);
-    template <class Row>
-    void place(std::span<const Row> boxes, const RowSlab& slab, std::span<std::array<float, 3>> reaches);
-    template <class Row>
-    [[nodiscard]] std::array<float, 3> gather(std::span<const Row> boxes, std::uint32_t begin, std::uint32_t end);
+    [[nodiscard]] bool is_shared(const TaskRunner* tasks) const;
+    template <class Row> [[nodiscard]] row_grid::Counted count(std::span<const Row> boxes, TaskRunner* tasks);
+    void place();
+    void place_shared(TaskRunner& tasks);
+    void place_share(std::uint32_t counters, std::uint32_t counters_end);
+    void begin_cells(std::uint32_t counters, std::uint32_t counters_end, std::uint32_t first);
     template <class Row> void see_levels(std::span<const Row> boxes);
+    template <class Row> void fetch(std::span<const Row> boxes, TaskRunner* tasks);
     RecordSpan shift(std::uint32_t hole, std::uint32_t place);
     [[nodiscard]] std::array<std::size_t, 6> column_places() const;
     template <class Row> void sort_listed(std::span<const Row> boxes, RowLevel& level);

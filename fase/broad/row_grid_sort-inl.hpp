@@ -233,36 +233,67 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
 }
 #endif
 
+/// Stores the counters of some boxes.
+template <class Row> HWY_INLINE void store_keys(const std::int32_t* counters, std::size_t count, float* keys) {
+    if (HWY_LIKELY(count == Wide::lanes)) {  // of a known length: one store
+        std::memcpy(keys, counters, Wide::lanes * sizeof *counters);
+    } else {
+        std::memcpy(keys, counters, count * sizeof *counters);
+    }
+}
+
 /// See row_grid::count_cells.
 template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
                        std::uint32_t* HWY_RESTRICT table) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        if (HWY_LIKELY(count == Wide::lanes)) {  // of a known length: one store
-            std::memcpy(keys + i, counters, Wide::lanes * sizeof *counters);
-        } else {
-            std::memcpy(keys + i, counters, count * sizeof *counters);
-        }
+        store_keys<Row>(counters, count, keys + i);
         for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
     });
 }
 
-/// See row_grid::deal_boxes.
-template <class Row> Counted deal_boxes_of(std::span<const Row> boxes, Proxy first, const RowFit& fit, Hand& hand) {
-    constexpr std::size_t ahead = 8;  // boxes of a slab whose memory is on its way
-    Move* HWY_RESTRICT const to = hand.to;
-    std::uint32_t* HWY_RESTRICT const next = hand.next.data();
-    return for_counters(boxes, fit, [&](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t slab = static_cast<std::uint32_t>(counters[k]) >> hand.shift;
-            std::uint32_t at = next[slab];
-            if (HWY_UNLIKELY(hand.is_full(at))) at = hand.take_run(slab);
-            next[slab] = at + 1;
-            __builtin_prefetch(to + at + ahead, 1);
-            const Row& row = boxes[i + k];
-            to[at] = {proxy_of(row, first + static_cast<Proxy>(i + k)), box_of(row)};
-        }
+/// See row_grid::find_keys.
+template <class Row> Counted find_keys_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys) {
+    return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
+        store_keys<Row>(counters, count, keys + i);
     });
+}
+
+/// See row_grid::keys_below.
+std::size_t keys_below_wide(std::span<const float> keys, std::uint32_t counter) {
+    const FloatTag d;
+    const hn::RebindToSigned<FloatTag> di;
+    const auto limit = hn::Set(di, static_cast<std::int32_t>(counter));
+    std::size_t below = 0, i = 0;
+    for (; i + width <= keys.size(); i += width)
+        below += hn::CountTrue(di, hn::Lt(hn::BitCast(di, hn::LoadU(d, keys.data() + i)), limit));
+    for (; i < keys.size(); ++i) below += std::bit_cast<std::uint32_t>(keys[i]) < counter ? 1 : 0;
+    return below;
+}
+
+/// See row_grid::select_keys.
+void select_keys_wide(std::span<const float> keys, std::uint32_t first, std::uint32_t last, std::size_t count,
+                      float* places, float* selected) {
+    const FloatTag d;
+    const WordTag dw;
+    const hn::RebindToSigned<FloatTag> di;
+    const auto from = hn::Set(di, static_cast<std::int32_t>(first)), to = hn::Set(di, static_cast<std::int32_t>(last));
+    std::size_t found = 0, i = 0;
+    for (; i + width <= keys.size() && found + width <= count; i += width) {
+        const auto key = hn::BitCast(di, hn::LoadU(d, keys.data() + i));
+        const std::uint32_t bits = bits_of(hn::RebindMask(d, hn::AndNot(hn::Lt(key, from), hn::Lt(key, to))));
+        const auto store = [&](Words all, float* at)
+                               HWY_ATTR { hn::StoreU(hn::BitCast(d, front(all, bits)), d, at + found); };
+        store(hn::BitCast(dw, key), selected);
+        store(hn::Iota(dw, static_cast<std::uint32_t>(i)), places);
+        found += static_cast<std::size_t>(std::popcount(bits));
+    }
+    for (; found < count; ++i) {
+        const auto key = std::bit_cast<std::uint32_t>(keys[i]);
+        if (key < first || key >= last) continue;
+        selected[found] = keys[i];
+        places[found++] = std::bit_cast<float>(static_cast<std::uint32_t>(i));
+    }
 }
 
 /// The same for each kind of list, by names that dispatch knows.
@@ -272,11 +303,11 @@ Counted count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* 
 Counted count_list_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
 }
-Counted deal_moves_wide(std::span<const Move> boxes, Proxy first, const RowFit& fit, Hand& hand) {
-    return deal_boxes_of(boxes, first, fit, hand);
+Counted moves_keys_wide(std::span<const Move> boxes, const RowFit& fit, float* keys) {
+    return find_keys_of(boxes, fit, keys);
 }
-Counted deal_list_wide(std::span<const Aabb> boxes, Proxy first, const RowFit& fit, Hand& hand) {
-    return deal_boxes_of(boxes, first, fit, hand);
+Counted list_keys_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
+    return find_keys_of(boxes, fit, keys);
 }
 std::array<float, 3> gather_moves_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,
                                        const std::array<float*, 6>& columns, Proxy* order) {

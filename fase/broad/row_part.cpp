@@ -49,7 +49,6 @@ void RowPart::commit(const RowGridSettings& settings, TaskRunner* tasks) {
     if (roomy_ == gives_up_room_after) {
         loose_.give_up_room();
         sorted_ = RowSet();
-        deal_ = RowDeal();
         sorts = true;
     }
     if (sorts) sort(settings, tasks);
@@ -61,9 +60,9 @@ void RowPart::commit(const RowGridSettings& settings, TaskRunner* tasks) {
 
 void RowPart::sort(const RowGridSettings& settings, TaskRunner* tasks) {
     loose_.see_odd();
-    if (sorted_.build(loose_.ordinary(), settings, &deal_, tasks)) return;
+    if (sorted_.build(loose_.ordinary(), settings, tasks)) return;
     loose_.see_all();
-    sorted_.build(loose_.ordinary(), settings, &deal_, tasks);
+    sorted_.build(loose_.ordinary(), settings, tasks);
 }
 
 /// What has not changed since it was sorted becomes a block.
@@ -71,7 +70,6 @@ void RowPart::part(const RowGridSettings& settings) {
     blocks_.adopt(std::move(sorted_), changed_);
     blocks_.commit({}, settings);
     sorted_ = {};
-    deal_ = {};
     BoxStore rest;
     const auto keep = [&](Proxy p) {
         if (loose_.holds(p) && !rest.holds(p)) rest.insert(p, loose_.box(p));

@@ -7,7 +7,6 @@
 
 #include "fase/broad/box_store.hpp"
 #include "fase/broad/row_blocks.hpp"
-#include "fase/broad/row_deal.hpp"
 
 namespace fase::broad {
 
@@ -91,7 +90,6 @@ private:
     static constexpr std::uint32_t watch_every = 8;           // commits, where much changes
     BoxStore loose_;                                          // "awake": has moved since the last look at all
     RowSet sorted_;                                           // the ordinary ones of loose_
-    RowDeal deal_;                                            // with which they were sorted
     RowBlocks blocks_;
     bool only_sorts_ = true;        // no blocks, and nobody watches
     bool watches_ = false;          // notes what changes after a commit, until it is too much
