@@ -41,6 +41,10 @@ struct Askers {
     std::span<const std::uint8_t> is_asker;
 };
 
+/// So many boxes, with all that is known of them, do not fit into the caches near a core: what is wanted soon is asked
+/// for ahead.
+inline constexpr std::size_t past_caches = std::size_t{1} << 17;
+
 struct Counted {
     std::size_t outside = 0;  ///< about so many boxes lie outside of their level's cells by more than the size of one
     bool odd = false;         ///< one of them is not ordinary

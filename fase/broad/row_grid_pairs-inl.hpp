@@ -188,10 +188,6 @@ HWY_INLINE void test_kind(const Neighbours& rows, const Columns& columns, Batch&
     if (with_long != 0) test_long<reaches_y, reaches_z>(rows, columns, batch, with_long, block);
 }
 
-/// So many boxes, with all that is known of them, do not fit into the caches near a core: what is wanted soon is asked
-/// for ahead.
-constexpr std::size_t past_caches = std::size_t{1} << 17;
-
 /// The records from `begin` to `end` of a level with a table against later ones of the level.
 inline void find_table_pairs(const RowView& set, const RowLevel& level, std::size_t begin, std::size_t end,
                              const Columns& c, PairBlock& block) {
