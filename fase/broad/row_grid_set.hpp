@@ -21,7 +21,7 @@ struct RowGridSettings {
     float side_share = 1.2f;       ///< chosen: that edge to the longest side of all but the largest in 50 boxes
     float cells_along = 5;         ///< at most so many cells along a row for one edge; rows are an edge apart
     float level_ratio = 3;         ///< edges of a level to those of the level below; at least 1.5
-    float cells_a_box = 0.8f;      ///< a table has no more cells than that, in the mean
+    float cells_a_box = 0.8f;      ///< a table has no more cells, in the mean; five times that where boxes crowd
     std::uint32_t fit_lasts = 64;  ///< commits until levels and cells are chosen anew, if nothing asks for it before
     std::uint32_t sample = 1024;   ///< boxes that are looked at to choose them
 };
