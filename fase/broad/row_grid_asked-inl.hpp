@@ -14,25 +14,13 @@ struct Cells {
     }
 };
 
-/// Boxes that ask, in columns: lower bounds along the rows and across them, then upper ones. `width` more may be read.
+/// Boxes that ask. `width` more may be read.
 struct AskerColumns {
-    std::array<const float*, 6> bounds;
-    const Proxy* proxies;
+    Columns columns;
     std::size_t count;
     std::span<const std::uint8_t> is_asker;  // see Askers
 
-    [[nodiscard]] HWY_INLINE Asker operator[](std::size_t i) const {
-        const FloatTag d;
-        Asker asker;
-        asker.minus_lo_x = hn::Neg(hn::Set(d, bounds[0][i]));
-        asker.minus_lo_y = hn::Neg(hn::Set(d, bounds[1][i]));
-        asker.minus_lo_z = hn::Neg(hn::Set(d, bounds[2][i]));
-        asker.hi_x = hn::Set(d, bounds[3][i]);
-        asker.hi_y = hn::Set(d, bounds[4][i]);
-        asker.hi_z = hn::Set(d, bounds[5][i]);
-        asker.proxy = hn::Set(WordTag(), proxies[i]);
-        return asker;
-    }
+    [[nodiscard]] HWY_INLINE Asker operator[](std::size_t i) const { return Asker(columns, i); }
 };
 constexpr std::size_t most_askers = 128;
 
@@ -47,7 +35,7 @@ HWY_INLINE std::uint32_t asked_of(const AskerColumns& askers, const Asker& asker
                                   std::size_t j, std::uint32_t bits) {
     bits &= bits_of(hn::RebindMask(FloatTag(), hn::Ne(hn::LoadU(WordTag(), c.proxies + j), asker.proxy)));
     if (HWY_UNLIKELY(!askers.is_asker.empty())) {
-        const Proxy mine = askers.proxies[i];
+        const Proxy mine = askers.columns.proxies[i];
         for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
             const Proxy other = c.proxies[j + static_cast<unsigned>(std::countr_zero(rest))];
             if (other < mine && other < askers.is_asker.size() && askers.is_asker[other] != 0)
@@ -118,7 +106,8 @@ inline void ask_table(const RowView& set, const RowLevel& level, const AskerColu
     // By asker: the first cell, then how many along each axis; none for one that is inverted.
     std::array<std::array<std::uint32_t, most_askers + width>, 4> cells;
     for (std::size_t i = 0; i < askers.count; i += width) {
-        const auto bound = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, askers.bounds[k] + i); };
+        const auto bound = [&](std::size_t k)
+                               HWY_ATTR { return hn::LoadU(d, askers.columns.lo_x + k * askers.columns.stride + i); };
         const auto store = [&](std::size_t k, auto v)
                                HWY_ATTR { hn::StoreU(hn::BitCast(dw, v), dw, cells[k].data() + i); };
         const auto x0 = x.of(hn::Sub(bound(0), reach_x)), y0 = y.of(hn::Sub(bound(1), reach_y)),
@@ -154,35 +143,17 @@ inline void ask_table(const RowView& set, const RowLevel& level, const AskerColu
 /// The same for a level whose rows stand in a list.
 inline void ask_list(const RowView& set, const RowLevel& level, const AskerColumns& askers, const Columns& c,
                      PairBlock& block) {
-    const auto [ax, ay, az] = set.axis;
-    const auto reach = [&](int axis) { return level.reach[static_cast<std::size_t>(axis)]; };
-    const ListedRow* const end = set.rows.data() + level.first_row + level.row_count;
     Writer out(block);
     for (std::size_t i = 0; i < askers.count; ++i) {
-        const auto lo = [&](std::size_t k, int axis) { return askers.bounds[k][i] - reach(axis); };
-        const auto hi = [&](std::size_t k) { return askers.bounds[k + 3][i]; };
-        const std::int32_t y0 = level.listed_cell(ay, lo(1, ay)), y1 = level.listed_cell(ay, hi(1));
-        const std::int32_t z0 = level.listed_cell(az, lo(2, az)), z1 = level.listed_cell(az, hi(2));
-        const float x0 = lo(0, ax), x1 = hi(0);
-        const auto find = [&](const ListedRow* begin, std::int32_t y, std::int32_t z) {
-            return std::lower_bound(begin, end, z, [y](const ListedRow& row, std::int32_t v) {
-                return row.y < y || (row.y == y && row.z < v);
-            });
-        };
-        for (const ListedRow* row = find(set.rows.data() + level.first_row, y0, z0); row < end && row->y <= y1;) {
-            if (row->z < z0) {
-                row = find(row, row->y, z0);
-            } else if (row->z > z1) {
-                row = find(row, row->y + 1, z0);
-            } else {
-                const float* const last = c.lo_x + row[1].first;
-                const float* const begin = std::lower_bound(c.lo_x + row->first, last, x0);
-                const float* const stop = std::upper_bound(begin, last, x1);
-                ask_range(askers, i, c, static_cast<std::size_t>(begin - c.lo_x),
-                          static_cast<std::size_t>(stop - c.lo_x), out);
-                ++row;
-            }
+        Aabb box;
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.lo[set.axis[k]] = askers.columns.lo_x[k * askers.columns.stride + i];
+            box.hi[set.axis[k]] = askers.columns.lo_x[(k + 3) * askers.columns.stride + i];
         }
+        walk_list(set, level, box, [&](std::uint32_t begin, std::uint32_t end) HWY_ATTR {
+            ask_range(askers, i, c, begin, end, out);
+            return true;
+        });
     }
 }
 
@@ -196,10 +167,7 @@ inline void ask_level(const RowView& set, const RowLevel& level, const AskerColu
 inline void ask_lower_levels(const RowView& set, std::size_t level_index, const Columns& c, std::size_t begin,
                              std::size_t end, PairBlock& block) {
     for (std::size_t i = begin; i < end; i += most_askers) {
-        const AskerColumns askers{{c.lo_x + i, c.lo_y() + i, c.lo_z() + i, c.hi_x() + i, c.hi_y() + i, c.hi_z() + i},
-                                  c.proxies + i,
-                                  std::min(most_askers, end - i),
-                                  {}};
+        const AskerColumns askers{{c.lo_x + i, c.stride, c.proxies + i}, std::min(most_askers, end - i), {}};
         for (std::size_t k = 0; k < level_index; ++k) ask_level(set, set.levels[k], askers, c, block);
     }
 }
@@ -231,11 +199,7 @@ void find_asked_pairs_wide(const RowView& set, const Askers& askers, PairBlock& 
         }
         for (std::array<float, most_askers + width>& bound : bounds)
             std::fill_n(bound.begin() + static_cast<std::ptrdiff_t>(count), width, 0.0f);
-        const AskerColumns asking{{bounds[0].data(), bounds[1].data(), bounds[2].data(), bounds[3].data(),
-                                   bounds[4].data(), bounds[5].data()},
-                                  proxies.data(),
-                                  count,
-                                  askers.is_asker};
+        const AskerColumns asking{{bounds[0].data(), most_askers + width, proxies.data()}, count, askers.is_asker};
         for (const RowLevel& level : set.levels) ask_level(set, level, asking, c, block);
     }
 }

@@ -18,6 +18,7 @@
 #include "fase/broad/box_store.hpp"
 #include "fase/broad/row_grid_compress.hpp"
 #include "fase/broad/row_grid_kernels.hpp"
+#include "fase/broad/row_grid_walk.hpp"
 #include "fase/math/wide-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -143,7 +143,7 @@ HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, T
                 order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
             turned.read_copies(boxes.data(), order.data());
         }
-        // Processors that foresee this begin too late, and not at all in short runs.
+        // Processors that foresee this begin too late.
         const char* const ahead = reinterpret_cast<const char*>(boxes.data() + i) + 2048;
         for (std::size_t b = 0; b < lanes * sizeof(Row); b += 64) __builtin_prefetch(ahead + b);
         auto counter = first_counter;
@@ -234,7 +234,7 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
 #endif
 
 /// Stores the counters of some boxes.
-template <class Row> HWY_INLINE void store_keys(const std::int32_t* counters, std::size_t count, float* keys) {
+HWY_INLINE void store_keys(const std::int32_t* counters, std::size_t count, float* keys) {
     if (HWY_LIKELY(count == Wide::lanes)) {  // of a known length: one store
         std::memcpy(keys, counters, Wide::lanes * sizeof *counters);
     } else {
@@ -247,7 +247,7 @@ template <class Row>
 Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
                        std::uint32_t* HWY_RESTRICT table) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        store_keys<Row>(counters, count, keys + i);
+        store_keys(counters, count, keys + i);
         for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
     });
 }
@@ -255,7 +255,7 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
 /// See row_grid::find_keys.
 template <class Row> Counted find_keys_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
-        store_keys<Row>(counters, count, keys + i);
+        store_keys(counters, count, keys + i);
     });
 }
 

@@ -70,12 +70,9 @@ struct Columns {
     std::size_t stride, stride3, stride5;  // few registers for six places
     const Proxy* proxies;
 
-    explicit HWY_INLINE Columns(const RowView& set)
-        : lo_x(set.columns),
-          stride(set.stride),
-          stride3(3 * set.stride),
-          stride5(5 * set.stride),
-          proxies(set.proxies) {}
+    HWY_INLINE Columns(const float* first, std::size_t apart, const Proxy* of)
+        : lo_x(first), stride(apart), stride3(3 * apart), stride5(5 * apart), proxies(of) {}
+    explicit HWY_INLINE Columns(const RowView& set) : Columns(set.columns, set.stride, set.proxies) {}
     [[nodiscard]] HWY_INLINE const float* lo_y() const { return lo_x + stride; }
     [[nodiscard]] HWY_INLINE const float* lo_z() const { return lo_x + 2 * stride; }
     [[nodiscard]] HWY_INLINE const float* hi_x() const { return lo_x + stride3; }

@@ -53,11 +53,10 @@ bool walk_table(const RowView& set, const RowLevel& level, const R& region, Test
     return true;
 }
 
-/// As walk_table(), for a level whose rows stand in a list.
-template <Region R, class Test>
-bool walk_list(const RowView& set, const RowLevel& level, const R& region, Test&& test) {
+/// Calls test(begin, end) for ranges of records that hold all boxes which touch the bounds, of a level whose rows stand
+/// in a list; false when it did.
+template <class Test> bool walk_list(const RowView& set, const RowLevel& level, Aabb bounds, Test&& test) {
     const auto [ax, ay, az] = set.axis;
-    Aabb bounds = region.bounds();
     const auto at = [](int a) { return static_cast<std::size_t>(a); };
     const auto from = [&](int a) { return bounds.lo[a] - level.reach[at(a)]; };
     const std::int32_t y0 = level.listed_cell(ay, from(ay)), y1 = level.listed_cell(ay, bounds.hi[ay]);
@@ -97,7 +96,8 @@ template <Region R, class Visit> bool walk(const RowView& set, const R& region, 
     };
     for (const RowLevel& level : set.levels) {
         if (level.count == 0) continue;
-        if (!(level.listed ? walk_list(set, level, region, test) : walk_table(set, level, region, test))) return false;
+        if (!(level.listed ? walk_list(set, level, region.bounds(), test) : walk_table(set, level, region, test)))
+            return false;
     }
     return true;
 }
