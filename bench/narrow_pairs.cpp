@@ -7,7 +7,7 @@
 
 #include "fase/core/random.hpp"
 #include "fase/geometry/hull_builder.hpp"
-#include "fase/narrow/general.hpp"
+#include "fase/narrow/detail/general.hpp"
 #include "fase/narrow/pairs/collide_box_box.hpp"
 #include "fase/narrow/pairs/collide_box_capsule.hpp"
 #include "fase/narrow/pairs/collide_box_convex_hull.hpp"

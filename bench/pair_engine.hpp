@@ -6,12 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "fase/broad/pair_finder.hpp"
+#include "fase/pairs/pair_finder.hpp"
 
 namespace fase::bench {
 
 using broad::Pair;
-using broad::Population;
 
 /// Boxes frame by frame, as many in each, known by their place in the list. What is set up once (memory, the choice of
 /// a world's size) is set up when it is made, with the first frame.
@@ -34,9 +33,9 @@ public:
 /// What an engine is made of. All is kept by the caller for as long as the engine lives.
 struct PairScene {
     std::span<const Aabb> boxes;  ///< of the first frame; finite, not empty
-    std::span<const Population> populations;
+    std::span<const MotionState> motion_states;
     [[nodiscard]] bool both_static(std::size_t p, std::size_t q) const {
-        return populations[p] == Population::Static && populations[q] == Population::Static;
+        return motion_states[p] == MotionState::Static && motion_states[q] == MotionState::Static;
     }
 };
 

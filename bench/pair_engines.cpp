@@ -11,7 +11,7 @@ class FasePairs final : public PairEngine {
 public:
     FasePairs(const PairScene& scene, const std::string& name)
         : name_(name), finder_(*broad::AnyStructure::named(name)) {
-        finder_.build(*tasks_, scene.boxes, scene.populations);
+        finder_.build(*tasks_, scene.boxes, scene.motion_states);
     }
     void update(std::span<const Aabb> boxes) override { finder_.update(*tasks_, boxes); }
     void find_pairs(std::vector<Pair>& out) override { finder_.find_pairs(*tasks_, out); }
@@ -21,7 +21,7 @@ public:
 private:
     std::string name_;
     std::unique_ptr<TaskRunner> tasks_ = make_serial_runner();
-    broad::PairFinder finder_;
+    pairs::PairFinder finder_;
 };
 
 std::unique_ptr<PairEngine> make_fase_pairs(const PairScene& scene, const std::string& name) {

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "bench/pair_engine.hpp"
-#include "fase/broad/pair_hash.hpp"
-#include "fase/broad/plain_sweep.hpp"
+#include "fase/broad/search/pair_hash.hpp"
+#include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/hash.hpp"
 #include "fase/record/trace.hpp"
 
@@ -56,7 +56,7 @@ struct Contender {
     PairBenchRow row;
 };
 
-broad::PairSetPrint judged(const PairScene& scene) {
+broad::PairSetFingerprint judged(const PairScene& scene) {
     std::vector<broad::Move> moves;
     for (const Aabb& box : scene.boxes) moves.push_back({static_cast<broad::Proxy>(moves.size()), box});
     std::vector<Pair> pairs;
@@ -68,14 +68,14 @@ broad::PairSetPrint judged(const PairScene& scene) {
 double seconds_for_part(const PairEngineInfo& info, const PairScene& scene,
                         const std::vector<std::vector<Aabb>>& frames, std::size_t stride) {
     std::vector<std::vector<Aabb>> parts(frames.size());
-    std::vector<Population> populations;
+    std::vector<MotionState> motion_states;
     for (std::size_t i = 0; i < scene.boxes.size(); i += stride) {
-        populations.push_back(scene.populations[i]);
+        motion_states.push_back(scene.motion_states[i]);
         for (std::size_t k = 0; k < frames.size(); ++k) parts[k].push_back(frames[k][i]);
     }
     std::vector<Pair> pairs;
     const double begin = ms_worked();
-    const auto engine = info.make({parts[0], populations}, info.name);
+    const auto engine = info.make({parts[0], motion_states}, info.name);
     for (const std::vector<Aabb>& part : parts) {
         engine->update(part);
         pairs.clear();
@@ -96,7 +96,7 @@ double guessed_seconds(const PairEngineInfo& info, const PairScene& scene,
 /// The engine goes through the frames of a turn. `right` are the prints of their pairs: the first engine to come by
 /// fills in those that are not known yet.
 void take_turn(Contender& contender, const PairScene& scene, const std::vector<std::vector<Aabb>>& frames, bool first,
-               std::vector<broad::PairSetPrint>& right, std::vector<Pair>& pairs) {
+               std::vector<broad::PairSetFingerprint>& right, std::vector<Pair>& pairs) {
     if (first) {
         const double begin = ms_worked();
         contender.engine = contender.info->make(scene, contender.info->name);
@@ -111,7 +111,7 @@ void take_turn(Contender& contender, const PairScene& scene, const std::vector<s
         const double ms = ms_worked() - begin;
         contender.seconds += ms / 1000;
         if (!first || k > 0) contender.times.push_back(ms);
-        const broad::PairSetPrint print = broad::print_of(pairs);
+        const broad::PairSetFingerprint print = broad::print_of(pairs);
         if (k == right.size()) right.push_back(print);
         contender.row.right = contender.row.right && print == right[k];
         contender.row.pairs = print.count;
@@ -137,14 +137,14 @@ void sum_up(Contender& contender) {
 
 }  // namespace
 
-std::vector<Population> populations_of(const record::TraceReader& trace) {
-    std::vector<Population> populations;
+std::vector<MotionState> motion_states_of(const record::TraceReader& trace) {
+    std::vector<MotionState> motion_states;
     for (const std::uint8_t flag : trace.flags()) {
-        populations.push_back((flag & record::trace_static) != 0   ? Population::Static
-                              : (flag & record::trace_asleep) != 0 ? Population::Asleep
-                                                                   : Population::Awake);
+        motion_states.push_back((flag & record::trace_static) != 0   ? MotionState::Static
+                                : (flag & record::trace_asleep) != 0 ? MotionState::Asleep
+                                                                     : MotionState::Awake);
     }
-    return populations;
+    return motion_states;
 }
 
 Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, const PairBenchOptions& options,
@@ -156,9 +156,9 @@ Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, 
     record::TraceReader& trace = *opened;
     const std::uint64_t total =
         options.frames == 0 ? trace.frames() : std::min<std::uint64_t>(options.frames, trace.frames());
-    const std::vector<Population> populations = populations_of(trace);
-    const auto count = [&](Population one) {
-        return static_cast<std::size_t>(std::count(populations.begin(), populations.end(), one));
+    const std::vector<MotionState> motion_states = motion_states_of(trace);
+    const auto count = [&](MotionState one) {
+        return static_cast<std::size_t>(std::count(motion_states.begin(), motion_states.end(), one));
     };
     const std::size_t slash = file.find_last_of('/');
     std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
@@ -169,9 +169,9 @@ Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, 
         contenders[i].info = (*named)[i];
         contenders[i].row.trace = name;
         contenders[i].row.engine = contenders[i].info->name;
-        contenders[i].row.boxes = populations.size();
-        contenders[i].row.still = count(Population::Static);
-        contenders[i].row.asleep = count(Population::Asleep);
+        contenders[i].row.boxes = motion_states.size();
+        contenders[i].row.still = count(MotionState::Static);
+        contenders[i].row.asleep = count(MotionState::Asleep);
     }
     std::vector<Aabb> first_frame;
     std::vector<std::vector<Aabb>> frames;
@@ -182,8 +182,8 @@ Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, 
         for (std::vector<Aabb>& frame : frames)
             if (const Result<bool> read = trace.next(frame); !read) return read.error();
         if (at == 0) first_frame = frames[0];
-        const PairScene scene{first_frame, populations};
-        std::vector<broad::PairSetPrint> right;
+        const PairScene scene{first_frame, motion_states};
+        std::vector<broad::PairSetFingerprint> right;
         if (at == 0) right.push_back(judged(scene));
         for (Contender& contender : contenders) {
             if (!progress(at, total, name, contender.row.engine)) {

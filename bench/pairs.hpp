@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "fase/broad/pair_finder.hpp"
 #include "fase/core/result.hpp"
+#include "fase/pairs/pair_finder.hpp"
 #include "fase/record/trace.hpp"
 
 namespace fase::bench {
@@ -38,7 +38,7 @@ struct PairBenchRow {
 };
 
 /// The populations that a trace's flags name.
-[[nodiscard]] std::vector<broad::Population> populations_of(const record::TraceReader& trace);
+[[nodiscard]] std::vector<MotionState> motion_states_of(const record::TraceReader& trace);
 
 /// Told before each turn: frames done, of so many, and whose turn it is. Returns false to stop.
 using PairBenchProgress =

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <string_view>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/core/random.hpp"
 
 namespace fase::bench {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 28;
+constexpr std::size_t max_bytes = std::size_t{1} << 28;
 constexpr std::size_t pile_frames = 60;
 
 Vec3 point_in(Random& random, const Aabb& box) {
@@ -175,7 +175,7 @@ QueryScene stirred_pile(const QueryCounts& counts) {
 }
 
 Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& counts) {
-    const Result<std::vector<std::byte>> bytes = read_file(obj_file, most_bytes);
+    const Result<std::vector<std::byte>> bytes = read_file(obj_file, max_bytes);
     if (!bytes) return bytes.error();
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     QueryScene scene;

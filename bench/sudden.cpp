@@ -7,20 +7,18 @@
 #include <array>
 #include <cmath>
 
-#include "fase/broad/pair_finder.hpp"
-#include "fase/broad/pair_hash.hpp"
-#include "fase/broad/plain_sweep.hpp"
+#include "fase/broad/search/pair_hash.hpp"
+#include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/random.hpp"
+#include "fase/pairs/pair_finder.hpp"
 
 namespace fase::bench {
 namespace {
 
-using broad::Population;
-
 /// Boxes of about a metre, two cubic metres for each; the first few move.
 struct Stage {
     std::vector<Aabb> boxes;
-    std::vector<Population> populations;
+    std::vector<MotionState> motion_states;
     std::vector<Vec3> velocities;  // of those that move
     float side = 0;
     Random random{7};
@@ -33,7 +31,7 @@ struct Stage {
 
 struct Event {
     std::string_view name, about;
-    Population rest;  // of all but those that move
+    MotionState rest;  // of all but those that move
     void (*happen)(Stage& stage, std::uint64_t frame, std::uint64_t frames);
 };
 
@@ -88,19 +86,19 @@ void some_wake(Stage& stage, std::uint64_t frame, std::uint64_t) {
 }
 
 constexpr std::array events{
-    Event{"nothing", "2,000 boxes move among those that stand", Population::Static, nothing},
-    Event{"wall", "a wall, one box in a hundred, vanishes in one frame", Population::Static, wall_vanishes},
-    Event{"comes", "one box more in each frame", Population::Static, one_comes},
-    Event{"rain", "1,000 boxes come and 1,000 go in each frame", Population::Static, rain},
-    Event{"wake", "all sleep, then all wake in one frame and move from then on", Population::Asleep, all_wake},
-    Event{"rouse", "500 of those that sleep wake in each frame", Population::Asleep, some_wake}};
+    Event{"nothing", "2,000 boxes move among those that stand", MotionState::Static, nothing},
+    Event{"wall", "a wall, one box in a hundred, vanishes in one frame", MotionState::Static, wall_vanishes},
+    Event{"comes", "one box more in each frame", MotionState::Static, one_comes},
+    Event{"rain", "1,000 boxes come and 1,000 go in each frame", MotionState::Static, rain},
+    Event{"wake", "all sleep, then all wake in one frame and move from then on", MotionState::Asleep, all_wake},
+    Event{"rouse", "500 of those that sleep wake in each frame", MotionState::Asleep, some_wake}};
 
 Stage begin(const Event& event, std::size_t count) {
     Stage stage;
     stage.side = static_cast<float>(std::cbrt(2.0 * static_cast<double>(count)));
     for (std::size_t i = 0; i < count; ++i) {
         stage.boxes.push_back(stage.any_box());
-        stage.populations.push_back(i < movers ? Population::Awake : event.rest);
+        stage.motion_states.push_back(i < movers ? MotionState::Awake : event.rest);
     }
     for (std::size_t i = 0; i < movers; ++i)
         stage.velocities.push_back(
@@ -109,7 +107,7 @@ Stage begin(const Event& event, std::size_t count) {
     const std::size_t spare = event.happen == rain ? 1000 : event.happen == one_comes ? 1000 : 0;
     for (std::size_t i = 0; i < spare; ++i) {
         stage.boxes.push_back({});
-        stage.populations.push_back(event.rest);
+        stage.motion_states.push_back(event.rest);
     }
     return stage;
 }
@@ -124,13 +122,13 @@ void move_about(Stage& stage) {
     }
 }
 
-broad::PairSetPrint judged(const Stage& stage) {
+broad::PairSetFingerprint judged(const Stage& stage) {
     std::vector<broad::Move> moves;
     for (std::size_t i = 0; i < stage.boxes.size(); ++i)
         if (!(stage.boxes[i] == Aabb{})) moves.push_back({static_cast<broad::Proxy>(i), stage.boxes[i]});
     std::vector<broad::Pair> pairs;
     broad::find_pairs_by_sweep(moves, pairs, [&](broad::Proxy p, broad::Proxy q) {
-        return stage.populations[p] != Population::Static || stage.populations[q] != Population::Static;
+        return stage.motion_states[p] != MotionState::Static || stage.motion_states[q] != MotionState::Static;
     });
     return broad::print_of(pairs);
 }
@@ -139,14 +137,14 @@ broad::PairSetPrint judged(const Stage& stage) {
 bool measure(const SuddenOptions& options, const Event& event, SuddenRow& row, const SuddenProgress& progress) {
     Stage stage = begin(event, options.boxes);
     const auto tasks = make_serial_runner();
-    broad::PairFinder finder = row.structure == "auto" ? broad::PairFinder::automatic()
-                                                       : broad::PairFinder(*broad::AnyStructure::named(row.structure));
+    pairs::PairFinder finder = row.structure == "auto" ? pairs::PairFinder::automatic()
+                                                       : pairs::PairFinder(*broad::AnyStructure::named(row.structure));
     const double build_begin = ms_worked();
-    finder.build(*tasks, stage.boxes, stage.populations);
+    finder.build(*tasks, stage.boxes, stage.motion_states);
     row.build_ms = ms_worked() - build_begin;
     std::vector<broad::Pair> pairs;
     std::vector<double> times;
-    std::vector<std::pair<Stage, broad::PairSetPrint>> looked_at;  // judged at the end, to leave the caches alone
+    std::vector<std::pair<Stage, broad::PairSetFingerprint>> looked_at;  // judged at the end, to leave the caches alone
     const std::string what = fmt::format("{} {}", event.name, row.structure);
     for (std::uint64_t frame = 0; frame < options.frames + 5; ++frame) {
         if (!progress(frame, options.frames + 5, what)) return false;

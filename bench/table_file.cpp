@@ -11,12 +11,12 @@
 #include <fstream>
 #include <thread>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::bench {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 26;
+constexpr std::size_t max_bytes = std::size_t{1} << 26;
 
 std::string field(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -78,7 +78,7 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
     std::string text;
     struct stat there {};
     if (::stat(file.c_str(), &there) == 0) {
-        const Result<std::vector<std::byte>> bytes = read_file(file, most_bytes);
+        const Result<std::vector<std::byte>> bytes = read_file(file, max_bytes);
         if (!bytes) return bytes.error();
         text.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     }

@@ -10,12 +10,12 @@
 #include <new>
 #include <set>
 
-#include "cli/arguments.hpp"
-#include "cli/output.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
 #include "cli/sprite_files.hpp"
-#include "cli/start.hpp"
 #include "fase/atlas/atlas.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
 namespace {
@@ -51,7 +51,7 @@ void print(const Figures& figures, bool json) {
 
 Result<atlas::PackOptions> pack_options_of(const AtlasCommand& command) {
     atlas::PackOptions options;
-    options.max_side = command.max_side.value_or(command.rects.empty() ? 4096 : atlas::most_page_side);
+    options.max_side = command.max_side.value_or(command.rects.empty() ? 4096 : atlas::max_page_side);
     options.padding = command.padding;
     options.extrude = command.extrude;
     options.rotate = !command.no_rotate;
@@ -148,7 +148,7 @@ void add_atlas(CLI::App& app, Start& start) {
              options.output);
     add_text(command, "--rects", "Packs the rectangles of a file instead: width and height a line", options.rects);
     add_whole_number(command, "--max", "The largest side of a page (default 4096; of --rects 65536)", 1,
-                     atlas::most_page_side, options.max_side);
+                     atlas::max_page_side, options.max_side);
     add_whole_number(command, "--padding", "Empty pixels between sprites (default 0)", 0, 1024, options.padding);
     add_whole_number(command, "--extrude", "Pixels around each sprite that repeat its edge (default 0)", 0, 1024,
                      options.extrude);

@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "cli/arguments.hpp"
-#include "cli/output.hpp"
-#include "cli/start.hpp"
-#include "fase/core/files.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using scene::JsonKind;
 using scene::JsonValue;
 
-constexpr std::size_t most_bytes = std::size_t{1} << 28;
+constexpr std::size_t max_bytes = std::size_t{1} << 28;
 /// How well a number that was computed with other code, without a stated tolerance, must be met: to float sizes.
 constexpr double computed_tolerance = 1e-6;
 
@@ -170,7 +170,7 @@ Result<Verdict> judge(const JsonValue& one) {
 }
 
 Result<std::vector<Verdict>> judge_file(const std::string& file) {
-    const auto bytes = read_file(file, most_bytes);
+    const auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     if (!document) return document.error();

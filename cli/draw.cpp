@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "cli/arguments.hpp"
-#include "cli/output.hpp"
-#include "cli/start.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/box_picture.hpp"
-#include "fase/record/output_file.hpp"
+#include "fase/record/recording/output_file.hpp"
 #include "fase/record/trace.hpp"
 
 namespace fase::cli {

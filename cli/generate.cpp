@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <new>
 
-#include "cli/arguments.hpp"
-#include "cli/output.hpp"
-#include "cli/start.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
 #include "fase/record/generate_trace.hpp"
 #include "fase/scene/generate.hpp"
 #include "fase/scene/gltf_write.hpp"

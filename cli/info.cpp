@@ -8,11 +8,11 @@
 #include <map>
 #include <vector>
 
-#include "cli/arguments.hpp"
-#include "cli/facts.hpp"
-#include "cli/output.hpp"
-#include "cli/start.hpp"
-#include "fase/core/files.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/facts.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/player.hpp"
 #include "fase/record/trace.hpp"

@@ -5,25 +5,25 @@
 #include <exception>
 #include <new>
 
-#include "cli/arguments.hpp"
 #include "cli/atlas.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
 #include "cli/distance.hpp"
 #include "cli/draw.hpp"
 #include "cli/generate.hpp"
 #include "cli/info.hpp"
-#include "cli/level.hpp"
-#include "cli/output.hpp"
+#include "cli/level/level.hpp"
 #include "cli/pairs.hpp"
 #include "cli/query.hpp"
 #include "cli/run.hpp"
-#include "cli/start.hpp"
-#include "cli/view.hpp"
+#include "cli/view/view.hpp"
 #include "fase/core/version.hpp"
 #ifdef HAS_FASE_BENCH
-#include "cli/bench_pairs.hpp"
-#include "cli/bench_queries.hpp"
-#include "cli/bench_step.hpp"
-#include "cli/bench_sudden.hpp"
+#include "cli/bench/pairs.hpp"
+#include "cli/bench/queries.hpp"
+#include "cli/bench/step.hpp"
+#include "cli/bench/sudden.hpp"
 #endif
 
 namespace fase::cli {

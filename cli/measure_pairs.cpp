@@ -8,7 +8,7 @@
 #include <chrono>
 
 #include "bench/pairs.hpp"
-#include "fase/broad/plain_sweep.hpp"
+#include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/random.hpp"
 #include "fase/pairs/pair_tracker.hpp"
 
@@ -17,13 +17,12 @@ namespace {
 
 using broad::Move;
 using broad::Pair;
-using broad::Population;
 using broad::Proxy;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t most_pairs = std::uint64_t{1} << 28;  // 2 GiB
-constexpr std::size_t most_tried = 1000;                      // boxes for which the judge tries all
-constexpr std::uint64_t looks = 16;                           // frames whose pairs are guessed, where none is judged
+constexpr std::uint64_t max_pairs = std::uint64_t{1} << 28;  // 2 GiB
+constexpr std::size_t max_tried = 1000;                      // boxes for which the judge tries all
+constexpr std::uint64_t looks = 16;                          // frames whose pairs are guessed, where none is judged
 
 double ms_since(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -31,8 +30,8 @@ double ms_since(Clock::time_point begin) {
 
 /// How many pairs there are, about: some boxes are tried against all.
 double guessed_pairs(std::span<const Aabb> boxes) {
-    constexpr std::size_t most_samples = 128;
-    const std::size_t samples = std::min(most_samples, boxes.size());
+    constexpr std::size_t max_samples = 128;
+    const std::size_t samples = std::min(max_samples, boxes.size());
     Random random(1);
     std::uint64_t hits = 0;
     for (std::size_t i = 0; i < samples; ++i) {
@@ -45,11 +44,11 @@ double guessed_pairs(std::span<const Aabb> boxes) {
 }
 
 /// All pairs but those of two static boxes, found in the plainest way that is fast enough.
-void judge_pairs(std::span<const Aabb> boxes, std::span<const Population> populations, std::vector<Pair>& out) {
+void judge_pairs(std::span<const Aabb> boxes, std::span<const MotionState> motion_states, std::vector<Pair>& out) {
     const auto wanted = [&](Proxy p, Proxy q) {
-        return populations[p] != Population::Static || populations[q] != Population::Static;
+        return motion_states[p] != MotionState::Static || motion_states[q] != MotionState::Static;
     };
-    if (boxes.size() > most_tried) {
+    if (boxes.size() > max_tried) {
         std::vector<Move> moves;
         moves.reserve(boxes.size());
         for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
@@ -84,19 +83,19 @@ double brute_force_seconds(std::span<const Aabb> boxes, const TraceSurvey& surve
 class Player {
 public:
     Player(const StructureChoice& choice, bool changes, TaskRunner& tasks) : tasks_(tasks), changes_(changes) {
-        broad::PairFinder empty =
-            choice.asked == "auto" ? broad::PairFinder::automatic() : broad::PairFinder(choice.empty);
+        pairs::PairFinder empty =
+            choice.asked == "auto" ? pairs::PairFinder::automatic() : pairs::PairFinder(choice.empty);
         if (changes) {
             tracker_ = pairs::PairTracker(std::move(empty));
         } else {
             finder_ = std::move(empty);
         }
     }
-    void build(std::span<const Aabb> boxes, std::span<const Population> populations) {
+    void build(std::span<const Aabb> boxes, std::span<const MotionState> motion_states) {
         if (changes_) {
-            print_ = broad::print_of(tracker_.build(tasks_, boxes, populations).begun);
+            print_ = broad::print_of(tracker_.build(tasks_, boxes, motion_states).begun);
         } else {
-            finder_.build(tasks_, boxes, populations);
+            finder_.build(tasks_, boxes, motion_states);
             find();  // so that memory is at hand
         }
     }
@@ -114,7 +113,7 @@ public:
         finder_.find_pairs(tasks_, pairs_);
     }
     /// Of the pairs of this frame; to be asked for once after each update().
-    broad::PairSetPrint print() {
+    broad::PairSetFingerprint print() {
         if (!changes_) return broad::print_of(pairs_);
         print_ += broad::print_of(told_.begun);
         print_ -= broad::print_of(told_.ended);
@@ -122,32 +121,33 @@ public:
     }
     [[nodiscard]] std::uint64_t begun() const { return told_.begun.size(); }
     [[nodiscard]] std::uint64_t ended() const { return told_.ended.size(); }
-    [[nodiscard]] const broad::PairFinder& finder() const { return changes_ ? tracker_.finder() : finder_; }
+    [[nodiscard]] const pairs::PairFinder& finder() const { return changes_ ? tracker_.finder() : finder_; }
 
 private:
     TaskRunner& tasks_;
     bool changes_;
     pairs::PairTracker tracker_;  // of changes
-    broad::PairFinder finder_;    // of all pairs
+    pairs::PairFinder finder_;    // of all pairs
     std::vector<Pair> pairs_;
     pairs::PairChanges told_;
-    broad::PairSetPrint print_;
+    broad::PairSetFingerprint print_;
 };
 
 /// Which structures an automatic choice ended with: that of most boxes is named first.
-void tell_choice(const broad::PairFinder& finder, std::span<const Population> populations, PairFigures& figures) {
+void tell_choice(const pairs::PairFinder& finder, std::span<const MotionState> motion_states, PairFigures& figures) {
     std::array<std::size_t, 4> counts{};  // absent boxes stand nowhere
-    for (Proxy p = 0; p < populations.size(); ++p) ++counts[static_cast<std::size_t>(finder.population(p))];
-    constexpr std::array<std::string_view, 3> names{"awake", "asleep", "static"};
-    static_assert(static_cast<int>(Population::Awake) == 0 && static_cast<int>(Population::Static) == 2);
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (counts[i] == 0) continue;
-        const broad::SuitedStructure chosen = finder.chosen(static_cast<Population>(i));
-        figures.reason += fmt::format("{}{} {}: {} ({})", figures.reason.empty() ? "" : "; ", counts[i], names[i],
+    for (Proxy p = 0; p < motion_states.size(); ++p) ++counts[static_cast<std::size_t>(finder.motion_state(p))];
+    constexpr std::array<std::pair<MotionState, std::string_view>, 3> states{
+        {{MotionState::Awake, "awake"}, {MotionState::Asleep, "asleep"}, {MotionState::Static, "static"}}};
+    std::size_t max_count = 0;
+    for (const auto& [state, name] : states) {
+        const std::size_t count = counts[static_cast<std::size_t>(state)];
+        if (count == 0) continue;
+        const broad::AutoStructure chosen = finder.chosen(state);
+        figures.reason += fmt::format("{}{} {}: {} ({})", figures.reason.empty() ? "" : "; ", count, name,
                                       chosen.structure, chosen.reason);
-        if (counts[i] >= most) figures.chosen = chosen.structure;
-        most = std::max(most, counts[i]);
+        if (count >= max_count) figures.chosen = chosen.structure;
+        max_count = std::max(max_count, count);
     }
 }
 
@@ -156,12 +156,12 @@ void tell_choice(const broad::PairFinder& finder, std::span<const Population> po
 Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell) {
     TraceSurvey seen;
     seen.frames = frames == 0 ? trace.frames() : std::min<std::uint64_t>(frames, trace.frames());
-    const std::vector<Population> populations = bench::populations_of(trace);
-    const auto count = [&](Population one) {
-        return static_cast<std::uint64_t>(std::count(populations.begin(), populations.end(), one));
+    const std::vector<MotionState> motion_states = bench::motion_states_of(trace);
+    const auto count = [&](MotionState one) {
+        return static_cast<std::uint64_t>(std::count(motion_states.begin(), motion_states.end(), one));
     };
-    seen.static_boxes = count(Population::Static);
-    seen.asleep_boxes = count(Population::Asleep);
+    seen.static_boxes = count(MotionState::Static);
+    seen.asleep_boxes = count(MotionState::Asleep);
     trace.rewind();
     std::vector<Aabb> boxes;
     std::vector<Pair> pairs;
@@ -169,22 +169,22 @@ Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, boo
         if (!tell(frame, seen.frames, judge ? "the right pairs" : "a look at all boxes")) break;
         if (const Result<bool> read = trace.next(boxes); !read) return read.error();
         const double guess = judge || frame % (seen.frames / looks + 1) == 0 ? guessed_pairs(boxes) : 0;
-        if (guess > static_cast<double>(most_pairs)) {
+        if (guess > static_cast<double>(max_pairs)) {
             return Error{Status::Capacity,
                          trace.path(),
-                         fmt::format("frame {}: found about {:.1e} pairs, need at most {}", frame, guess, most_pairs),
+                         fmt::format("frame {}: found about {:.1e} pairs, need at most {}", frame, guess, max_pairs),
                          {}};
         }
         if (!judge) continue;
         pairs.clear();
-        judge_pairs(boxes, populations, pairs);
+        judge_pairs(boxes, motion_states, pairs);
         seen.judged.push_back(broad::print_of(pairs));
     }
     return seen;
 }
 
 Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
-                                  TaskRunner& tasks, bool changes, std::optional<double> most_seconds,
+                                  TaskRunner& tasks, bool changes, std::optional<double> max_seconds,
                                   const Tell& tell) {
     PairFigures figures;
     figures.structure = choice.asked;
@@ -194,18 +194,18 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     trace.rewind();
     if (const Result<bool> read = trace.next(boxes); !read) return read.error();
     const bool tries_all = choice.chosen == broad::BruteForce::info.name;
-    if (const double guess = tries_all && most_seconds ? brute_force_seconds(boxes, survey) : 0;
-        guess > most_seconds.value_or(0)) {
-        figures.skipped = fmt::format("would take about {:.0f} s, more than {} s", guess, *most_seconds);
+    if (const double guess = tries_all && max_seconds ? brute_force_seconds(boxes, survey) : 0;
+        guess > max_seconds.value_or(0)) {
+        figures.skipped = fmt::format("would take about {:.0f} s, more than {} s", guess, *max_seconds);
         return figures;
     }
 
     const auto start = Clock::now();
     const bool automatic = choice.asked == "auto";
     Player player(choice, changes, tasks);
-    const std::vector<Population> populations = bench::populations_of(trace);
+    const std::vector<MotionState> motion_states = bench::motion_states_of(trace);
     const auto begin_of_build = Clock::now();
-    player.build(boxes, populations);
+    player.build(boxes, motion_states);
     figures.build_ms = ms_since(begin_of_build);
 
     std::vector<double> times;
@@ -213,9 +213,9 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     bool right = true;
     for (std::uint64_t frame = 0; frame < survey.frames; ++frame) {
         if (!tell(frame, survey.frames, choice.asked)) break;
-        if (most_seconds && ms_since(start) > *most_seconds * 1000) {
+        if (max_seconds && ms_since(start) > *max_seconds * 1000) {
             figures.skipped =
-                fmt::format("took more than {} s for {} frames of {}", *most_seconds, frame, survey.frames);
+                fmt::format("took more than {} s for {} frames of {}", *max_seconds, frame, survey.frames);
             return figures;
         }
         if (frame > 0) {
@@ -226,7 +226,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
         player.find();
         if (frame > 0 || !changes) times.push_back(ms_since(begin));
 
-        const broad::PairSetPrint print = player.print();
+        const broad::PairSetFingerprint print = player.print();
         ++figures.frames;
         figures.begun_sum += player.begun();
         figures.ended_sum += player.ended();
@@ -237,10 +237,10 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
         if (frame < survey.judged.size()) right = right && print == survey.judged[frame];
     }
     figures.ms = bench::timing_of(times);
-    if (!times.empty()) figures.least_ms = *std::min_element(times.begin(), times.end());
+    if (!times.empty()) figures.min_ms = *std::min_element(times.begin(), times.end());
     figures.hash = hash.value();
     figures.stats = player.finder().stats();
-    if (automatic) tell_choice(player.finder(), populations, figures);
+    if (automatic) tell_choice(player.finder(), motion_states, figures);
     if (!survey.judged.empty()) figures.right = right;
     return figures;
 }

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "cli/structure_choice.hpp"
-#include "fase/broad/pair_finder.hpp"
-#include "fase/broad/pair_hash.hpp"
+#include "cli/common/structure_choice.hpp"
+#include "fase/broad/search/pair_hash.hpp"
+#include "fase/pairs/pair_finder.hpp"
 #include "fase/record/trace.hpp"
 
 namespace fase::cli {
@@ -28,7 +28,7 @@ struct PairFigures {
     double build_ms = 0;                         ///< filling it with the first frame, pairs of what rests included
     bench::Timing ms;                            ///< of a frame: taking the new boxes and finding all current pairs
     std::uint64_t begun_sum = 0, ended_sum = 0;  ///< pairs that did, all frames but the first; when changes are told
-    double least_ms = 0;                         ///< of a frame: what a busy machine disturbs least
+    double min_ms = 0;                           ///< of a frame: what a busy machine disturbs least
     std::uint64_t pairs_first = 0, pairs_last = 0, pairs_sum = 0;  ///< of the first frame, the last one, all
     std::uint64_t hash = 0;       ///< of the pair sets of all frames; the order of pairs within a frame does not count
     broad::StructureStats stats;  ///< of the structures, after the last frame
@@ -39,7 +39,7 @@ struct PairFigures {
 struct TraceSurvey {
     std::uint64_t frames = 0;  ///< that are to be measured
     std::uint64_t static_boxes = 0, asleep_boxes = 0;
-    std::vector<broad::PairSetPrint> judged;  ///< a frame: its right pairs; empty: not asked
+    std::vector<broad::PairSetFingerprint> judged;  ///< a frame: its right pairs; empty: not asked
 };
 
 /// Reads `frames` frames (0: all) and so judges the file; with `judge` finds their pairs by trying all (up to 1,000
@@ -51,7 +51,6 @@ Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, boo
 /// all, and what is checked are the sets that follow from them. With a limit, a structure that would take more seconds,
 /// or has, is skipped.
 Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
-                                  TaskRunner& tasks, bool changes, std::optional<double> most_seconds,
-                                  const Tell& tell);
+                                  TaskRunner& tasks, bool changes, std::optional<double> max_seconds, const Tell& tell);
 
 }  // namespace fase::cli

@@ -15,7 +15,7 @@ using broad::Proxy;
 using broad::RayMeasure;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_judged = 64;
+constexpr std::size_t max_judged = 64;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -67,19 +67,19 @@ bool is_right(const AnyStructure& structure, const QuerySet& set, const JudgedQu
 /// Asks all questions, again and again when that is soon done, until the time is over; the clock is looked at after
 /// some of them.
 template <class Questions, class Ask>
-QueryRate rate_of(const Questions& questions, double most_seconds, const std::function<bool()>& go_on, const Ask& ask) {
-    constexpr double between_looks = 0.01, least_seconds = 0.1;
+QueryRate rate_of(const Questions& questions, double max_seconds, const std::function<bool()>& go_on, const Ask& ask) {
+    constexpr double between_looks = 0.01, min_seconds = 0.1;
     QueryRate rate;
     if (questions.empty()) return rate;
     std::uint64_t asked = 0, hits = 0, next_look = 1;
     double seconds = 0;
     const auto begin = Clock::now();
-    while (seconds < least_seconds) {
+    while (seconds < min_seconds) {
         for (const auto& question : questions) {
             hits += ask(question);
             if (++asked < next_look) continue;
             seconds = seconds_since(begin);
-            if (seconds > most_seconds || !go_on()) break;
+            if (seconds > max_seconds || !go_on()) break;
             const double each = seconds / static_cast<double>(asked);
             next_look = asked + 1 + static_cast<std::uint64_t>(between_looks / std::max(each, 1e-8));
         }
@@ -88,7 +88,7 @@ QueryRate rate_of(const Questions& questions, double most_seconds, const std::fu
             rate.asked = asked;
             rate.hits = hits;
         }
-        if (asked % questions.size() != 0 || seconds > most_seconds) break;
+        if (asked % questions.size() != 0 || seconds > max_seconds) break;
     }
     rate.per_second = static_cast<double>(asked) / std::max(seconds, 1e-9);
     return rate;
@@ -98,19 +98,19 @@ QueryRate rate_of(const Questions& questions, double most_seconds, const std::fu
 
 JudgedQueries judge_queries(std::span<const Aabb> boxes, const QuerySet& set) {
     JudgedQueries judged;
-    for (std::size_t i = 0; i < std::min(most_judged, set.rays.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(max_judged, set.rays.size()); ++i) {
         const RayMeasure measure(set.rays[i]);
         NearestRay nearest;
         for (Proxy p = 0; p < boxes.size(); ++p)
             if (const float at = measure.at(boxes[p], set.rays[i].length); at < broad::beyond) nearest.see(p, at);
         judged.rays.push_back(nearest.hit());
     }
-    for (std::size_t i = 0; i < std::min(most_judged, set.boxes.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(max_judged, set.boxes.size()); ++i) {
         judged.boxes.emplace_back();
         for (Proxy p = 0; p < boxes.size(); ++p)
             if (overlaps(boxes[p], set.boxes[i])) judged.boxes.back().push_back(p);
     }
-    for (std::size_t i = 0; i < std::min(most_judged, set.frusta.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(max_judged, set.frusta.size()); ++i) {
         const FrustumRegion region(set.frusta[i]);
         judged.frusta.emplace_back();
         for (Proxy p = 0; p < boxes.size(); ++p) {
@@ -122,7 +122,7 @@ JudgedQueries judge_queries(std::span<const Aabb> boxes, const QuerySet& set) {
 }
 
 QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set, const JudgedQueries* judged,
-                             const StructureChoice& choice, double most_seconds, const std::function<bool()>& go_on) {
+                             const StructureChoice& choice, double max_seconds, const std::function<bool()>& go_on) {
     QueryFigures figures;
     figures.structure = choice.asked;
     figures.chosen = choice.chosen;
@@ -136,7 +136,7 @@ QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set, c
     figures.bytes = structure.bytes();
     if (judged != nullptr) figures.right = is_right(structure, set, *judged);
 
-    const double share = most_seconds / 3;
+    const double share = max_seconds / 3;
     figures.rays = rate_of(set.rays, share, go_on, [&](const Ray& ray) {
         return nearest(structure, ray).at < broad::beyond ? std::uint64_t{1} : 0;
     });

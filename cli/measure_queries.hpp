@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/common/structure_choice.hpp"
 #include "cli/query_set.hpp"
-#include "cli/structure_choice.hpp"
 
 namespace fase::cli {
 
@@ -47,10 +47,10 @@ struct QueryFigures {
 /// Answers by trying all boxes, for the first 64 questions of each kind.
 [[nodiscard]] JudgedQueries judge_queries(std::span<const Aabb> boxes, const QuerySet& set);
 
-/// Fills a structure with the boxes and asks. Each kind of question gets a third of `most_seconds`. `go_on` is asked
+/// Fills a structure with the boxes and asks. Each kind of question gets a third of `max_seconds`. `go_on` is asked
 /// now and then; false stops it.
 [[nodiscard]] QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set,
                                            const JudgedQueries* judged, const StructureChoice& choice,
-                                           double most_seconds, const std::function<bool()>& go_on);
+                                           double max_seconds, const std::function<bool()>& go_on);
 
 }  // namespace fase::cli

@@ -7,15 +7,15 @@
 #include <cstdio>
 #include <optional>
 
-#include "cli/arguments.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/progress.hpp"
+#include "cli/common/start.hpp"
+#include "cli/common/table.hpp"
 #include "cli/measure_pairs.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "cli/start.hpp"
-#include "cli/table.hpp"
 #include "fase/core/simd.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
 namespace {
@@ -30,7 +30,7 @@ std::string json_of(const PairFigures& row) {
             "\"pairs_first\": {}, \"pairs_last\": {}, \"pairs_sum\": {}, \"hash\": \"{:016x}\", \"bytes\": {}, "
             "\"depth\": {}, \"nodes\": {}, \"boxes_per_leaf\": {:.4g}, \"checked\": {}, \"begun_sum\": {}, "
             "\"ended_sum\": {}, ",
-            row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.least_ms, row.pairs_first,
+            row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.min_ms, row.pairs_first,
             row.pairs_last, row.pairs_sum, row.hash, row.stats.bytes, row.stats.depth, row.stats.nodes,
             row.stats.occupancy(), row.right ? (*row.right ? "true" : "false") : "null", row.begun_sum, row.ended_sum);
     } else {

@@ -7,15 +7,15 @@
 #include <cstdio>
 #include <optional>
 
-#include "cli/arguments.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/load_scene.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/load_scene.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/progress.hpp"
+#include "cli/common/start.hpp"
+#include "cli/common/table.hpp"
 #include "cli/measure_queries.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
-#include "cli/start.hpp"
-#include "cli/table.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
 namespace {

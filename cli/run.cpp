@@ -9,15 +9,15 @@
 #include <thread>
 #include <utility>
 
-#include "cli/arguments.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/level_scene.hpp"
-#include "cli/load_scene.hpp"
-#include "cli/output.hpp"
-#include "cli/progress.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/load_scene.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/progress.hpp"
+#include "cli/common/start.hpp"
+#include "cli/level/scene.hpp"
 #include "cli/run_summary.hpp"
 #include "cli/scene_look.hpp"
-#include "cli/start.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/recorder.hpp"
 #include "fase/record/world_trace.hpp"
@@ -26,7 +26,7 @@
 namespace fase::cli {
 namespace {
 
-constexpr double default_seconds = 10, most_seconds = 1e9;
+constexpr double default_seconds = 10, max_seconds = 1e9;
 
 Settings settings_of(const RunOptions& options, const scene::Scene& scene) {
     Settings settings = scene::settings_for(scene);
@@ -39,10 +39,10 @@ Settings settings_of(const RunOptions& options, const scene::Scene& scene) {
 Result<std::uint64_t> steps_of(const RunOptions& options, float time_step) {
     if (options.steps) return *options.steps;
     const double steps = std::round(options.seconds.value_or(default_seconds) / double(time_step));
-    if (steps > double(most_steps)) {
+    if (steps > double(max_steps)) {
         return Error{Status::BadArgument,
                      "--seconds",
-                     fmt::format("found {:.0f} steps of {:.6g} s, need at most {}", steps, time_step, most_steps),
+                     fmt::format("found {:.0f} steps of {:.6g} s, need at most {}", steps, time_step, max_steps),
                      {}};
     }
     return static_cast<std::uint64_t>(std::max(steps, 1.0));
@@ -209,9 +209,9 @@ void add_run(CLI::App& app, Start& start) {
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene; tell how it went; record it");
     add_text(command, "SCENE", "A .gltf, .glb or .wad file, or a kind of 'fase generate'", run.scene)->required();
     add_text(command, "--map", "Of a WAD: E1M1, MAP01 … (default: its first); bodies are thrown into it", run.map);
-    CLI::Option* seconds = add_positive_number(command, "--seconds", "Simulated time (default 10)", most_seconds,
+    CLI::Option* seconds = add_positive_number(command, "--seconds", "Simulated time (default 10)", max_seconds,
                                                [&run](double value) { run.seconds = value; });
-    add_whole_number(command, "--steps", "Steps, instead of seconds", 0, most_steps, run.steps)->excludes(seconds);
+    add_whole_number(command, "--steps", "Steps, instead of seconds", 0, max_steps, run.steps)->excludes(seconds);
     add_structure(command, "Broad phase: auto (default), ", run.structure);
     add_threads(command, "0 (default): all cores; the result is the same for any", 0, run.threads);
     add_positive_number(command, "--dt", "Seconds a step (default: the scene's, else 1/60)", 1,

@@ -14,7 +14,7 @@ namespace fase::cli {
 class Start;
 
 /// The most steps of one run: their times are all kept for the medians.
-inline constexpr std::uint64_t most_steps = 10'000'000;
+inline constexpr std::uint64_t max_steps = 10'000'000;
 
 struct RunOptions {
     std::string scene;                   ///< a glTF file, a WAD, or a name of scene::generators()

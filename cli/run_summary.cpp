@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "bench/timing.hpp"
-#include "cli/output.hpp"
-#include "fase/scene/json.hpp"
+#include "cli/common/output.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
 namespace {

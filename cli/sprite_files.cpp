@@ -9,15 +9,15 @@
 #include <string_view>
 
 #include "fase/atlas/png.hpp"
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t most_pixels_together = std::int64_t{1} << 28;
-constexpr std::size_t most_text = std::size_t{1} << 28;
+constexpr std::int64_t max_pixels_together = std::int64_t{1} << 28;
+constexpr std::size_t max_text = std::size_t{1} << 28;
 
 bool is_png(const fs::path& path) {
     std::string ending = path.extension().string();
@@ -102,10 +102,10 @@ Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> file
         Result<atlas::Image> image = atlas::read_png_file(file.path);
         if (!image) return image.error();
         pixels += area_of(image->size);
-        if (pixels > most_pixels_together)
+        if (pixels > max_pixels_together)
             return Error{
                 Status::Capacity, file.path,
-                fmt::format("found {} pixels in the images up to here, need at most {}", pixels, most_pixels_together),
+                fmt::format("found {} pixels in the images up to here, need at most {}", pixels, max_pixels_together),
                 "make several atlases"};
         sprites.push_back({file.name, *std::move(image)});
     }
@@ -113,7 +113,7 @@ Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> file
 }
 
 Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, most_text);
+    const Result<std::vector<std::byte>> bytes = read_file(path, max_text);
     if (!bytes) return bytes.error();
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     std::vector<atlas::Size> sizes;
@@ -127,12 +127,12 @@ Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
         if (line.empty()) continue;
         atlas::Size size;
         const bool good = take_number(line, size.width) && take_number(line, size.height) && line.empty();
-        if (!good || size.width < 1 || size.height < 1 || size.width > atlas::most_page_side ||
-            size.height > atlas::most_page_side)
+        if (!good || size.width < 1 || size.height < 1 || size.width > atlas::max_page_side ||
+            size.height > atlas::max_page_side)
             return Error{Status::Format,
                          fmt::format("{}:{}", path, number),
                          fmt::format("found \"{}\", need a width and a height of 1 to {}", whole.substr(0, 60),
-                                     atlas::most_page_side),
+                                     atlas::max_page_side),
                          {}};
         sizes.push_back(size);
     }

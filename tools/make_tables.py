@@ -72,18 +72,18 @@ def times_of(row, rows):
     for other in rows:
         if other["engine"] == "fase" and all(other[key] == row[key] for key in same):
             median = float(row["median_ms"]) / float(other["median_ms"])
-            least = float(row["least_ms"]) / float(other["least_ms"])
+            least = float(row["min_ms"]) / float(other["min_ms"])
             return f"{median:.2f} ({least:.2f})"
     return ""
 
 
 def cells_of(row, rows):
     """The row's cells, as COLUMNS names them."""
-    short = {"median_ms": 2, "mean_ms": 2, "worst_ms": 2, "least_ms": 2, "top_height": 3, "mean_height": 3, "drift": 3}
+    short = {"median_ms": 2, "mean_ms": 2, "worst_ms": 2, "min_ms": 2, "top_height": 3, "mean_height": 3, "drift": 3}
     number = {key: f"{float(row[key]):.{digits}f}" for key, digits in short.items()}
     return [
         row["scene"], row["engine"], row["threads"], row["bodies"], number["median_ms"], number["mean_ms"],
-        number["worst_ms"], number["least_ms"], times_of(row, rows), row["contacts"], number["top_height"],
+        number["worst_ms"], number["min_ms"], times_of(row, rows), row["contacts"], number["top_height"],
         number["mean_height"], number["drift"], row["hash"], row["commit"], row["date"],
     ]
 

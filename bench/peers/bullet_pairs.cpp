@@ -27,7 +27,7 @@ public:
         }
         boxes_.assign(scene.boxes.begin(), scene.boxes.end());
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
-            const bool fixed = scene.populations[i] == Population::Static;
+            const bool fixed = scene.motion_states[i] == MotionState::Static;
             constexpr int still = 1, moving = 2;
             proxies_.push_back(broadphase_->createProxy(to_bullet(boxes_[i].lo), to_bullet(boxes_[i].hi), 0,
                                                         reinterpret_cast<void*>(i), fixed ? still : moving,

@@ -23,7 +23,7 @@ public:
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
             const Aabb& box = boxes_[i];
             float lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
-            (scene_.populations[i] == Population::Static ? static_ : moving_).emplace_back(lo, hi, &places_[i]);
+            (scene_.motion_states[i] == MotionState::Static ? static_ : moving_).emplace_back(lo, hi, &places_[i]);
         }
         const auto take = [&out](const CgalBox& a, const CgalBox& b) {
             out.push_back(

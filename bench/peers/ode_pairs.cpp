@@ -61,7 +61,7 @@ public:
             const dGeomID geom = dCreateGeom(kind_);
             *static_cast<const Aabb**>(dGeomGetClassData(geom)) = &boxes_[i];
             dGeomSetData(geom, reinterpret_cast<void*>(i));
-            const bool fixed = scene.populations[i] == Population::Static;
+            const bool fixed = scene.motion_states[i] == MotionState::Static;
             constexpr unsigned long still = 1, moving = 2;
             dGeomSetCategoryBits(geom, fixed ? still : moving);
             dGeomSetCollideBits(geom, fixed ? moving : moving | still);

@@ -11,7 +11,7 @@
 namespace fase::atlas {
 namespace {
 
-constexpr std::int64_t most_page_pixels = std::int64_t{1} << 28;
+constexpr std::int64_t max_page_pixels = std::int64_t{1} << 28;
 
 /// Whether it is well-formed UTF-8 (RFC 3629).
 bool is_utf8(std::string_view text) {
@@ -115,10 +115,10 @@ Result<Atlas> make_atlas(std::span<const Sprite> sprites, const AtlasOptions& op
     }
     std::int64_t pixels = 0;
     for (const Size page : packing->pages) pixels += area_of(page);
-    if (pixels > most_page_pixels)
+    if (pixels > max_page_pixels)
         return Error{Status::Capacity, "atlas",
                      fmt::format("found {} pages of {} pixels, need at most {} pixels", packing->pages.size(), pixels,
-                                 most_page_pixels),
+                                 max_page_pixels),
                      "make several atlases"};
     for (const Size page : packing->pages) atlas.pages.emplace_back(page);
     for (std::size_t i = 0; i < sprites.size(); ++i) {

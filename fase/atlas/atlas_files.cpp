@@ -10,7 +10,7 @@
 
 #include "fase/atlas/atlas.hpp"
 #include "fase/atlas/png.hpp"
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::atlas {
 namespace {

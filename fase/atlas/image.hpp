@@ -10,7 +10,7 @@
 namespace fase::atlas {
 
 /// The most pixels that an image may have that is read: 64 Mi, 256 MiB.
-inline constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+inline constexpr std::int64_t max_pixels = std::int64_t{1} << 26;
 
 /// Rows of pixels from above, each red, green, blue, alpha of 8 bits, not premultiplied.
 struct Image {

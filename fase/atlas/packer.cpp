@@ -10,8 +10,8 @@
 #include <numeric>
 #include <utility>
 
-#include "fase/atlas/kd_tree.hpp"
-#include "fase/atlas/tries.hpp"
+#include "fase/atlas/packers/kd_tree.hpp"
+#include "fase/atlas/packers/tries.hpp"
 
 namespace fase::atlas {
 namespace {
@@ -30,7 +30,7 @@ Result<void> check(std::span<const Size> sizes, const PackOptions& options, std:
     const auto refuse = [](const char* what, auto found, const char* need) {
         return Error{Status::BadArgument, what, fmt::format("found {}, need {}", found, need), {}};
     };
-    if (options.max_side < 1 || options.max_side > most_page_side)
+    if (options.max_side < 1 || options.max_side > max_page_side)
         return refuse("PackOptions.max_side", options.max_side, "1 to 65536");
     if (options.padding < 0 || options.padding > 1024)
         return refuse("PackOptions.padding", options.padding, "0 to 1024");
@@ -86,9 +86,9 @@ private:
         return spent_ms() + longest_try_ms_ < page_end_ms_;
     }
     /// Tries rules on a page and keeps the outcome when it is better: less left over, or a smaller page for all.
-    bool attempt(std::uint32_t number, Size page, std::int64_t most_lost);
+    bool attempt(std::uint32_t number, Size page, std::int64_t max_lost);
     /// The least side that a square for all can have: by their area, and by the longest of them.
-    [[nodiscard]] int least_side(std::int64_t area) const;
+    [[nodiscard]] int min_side(std::int64_t area) const;
     void fill_page(std::int64_t area);
     void fill_square(std::int64_t area, int limit);
     void fill_power_of_two(std::int64_t area, int limit);
@@ -104,15 +104,15 @@ private:
     std::vector<Laid> laid_;
 };
 
-bool Packer::attempt(std::uint32_t number, Size page, std::int64_t most_lost) {
+bool Packer::attempt(std::uint32_t number, Size page, std::int64_t max_lost) {
     const TryRules rules = rules_of(number, options_.method);
     ++page_tries_;
     ++tries_;
     const double begun_ms = spent_ms();
-    const std::int64_t left = bench_.fill(rules, page, counts_, most_lost, laid_);
+    const std::int64_t left = bench_.fill(rules, page, counts_, max_lost, laid_);
     longest_try_ms_ = std::max(longest_try_ms_, spent_ms() - begun_ms);
     // Only what may leave something over counts as an outcome when it does: others were broken off.
-    if (left > 0 && most_lost != no_limit) return false;
+    if (left > 0 && max_lost != no_limit) return false;
     const bool better = left < best_.left || (left == best_.left && area_of(page) < area_of(best_.page));
     if (better) {
         best_.page = page;
@@ -123,7 +123,7 @@ bool Packer::attempt(std::uint32_t number, Size page, std::int64_t most_lost) {
     return left == 0;
 }
 
-int Packer::least_side(std::int64_t area) const {
+int Packer::min_side(std::int64_t area) const {
     std::int64_t side = static_cast<std::int64_t>(std::sqrt(static_cast<double>(area)));
     while (side * side < area) ++side;
     while (side > 1 && (side - 1) * (side - 1) >= area) --side;
@@ -144,7 +144,7 @@ void Packer::fill_whole(Size page) {
 }
 
 void Packer::fill_square(std::int64_t area, int limit) {
-    const int least = least_side(area);
+    const int least = min_side(area);
     const auto square = [](int side) { return Size{side, side}; };
     const auto attempt_all = [&](std::uint32_t number, int side) {
         return attempt(number, square(side), std::int64_t{side} * side - area);
@@ -173,7 +173,7 @@ void Packer::fill_square(std::int64_t area, int limit) {
 void Packer::fill_power_of_two(std::int64_t area, int limit) {
     const int padding = options_.padding;
     constexpr std::uint32_t rules_a_size = 16;
-    const int longest = least_side(0);
+    const int longest = min_side(0);
     for (int side = 1; side + padding <= limit; side *= 2) {
         for (const int width : {side, 2 * side}) {
             const Size page{width + padding, side + padding};

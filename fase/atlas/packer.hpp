@@ -11,7 +11,7 @@
 namespace fase::atlas {
 
 /// The largest side of a page and of a rectangle.
-inline constexpr int most_page_side = 65536;
+inline constexpr int max_page_side = 65536;
 
 /// Whose rules are tried.
 enum class Method : std::uint8_t {
@@ -22,7 +22,7 @@ enum class Method : std::uint8_t {
 
 /// What is asked of a packing.
 struct PackOptions {
-    int max_side = 4096;        ///< no page is wider or higher; 1 to most_page_side
+    int max_side = 4096;        ///< no page is wider or higher; 1 to max_page_side
     int padding = 0;            ///< pixels between neighbours that stay empty; none at the page's edge
     int extrude = 0;            ///< pixels around each rectangle that are its own (for repeated edges)
     bool rotate = true;         ///< may lie turned by 90°

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::atlas {
 namespace {
@@ -153,9 +153,9 @@ Result<Image> read_png(std::span<const std::byte> bytes, const std::string& wher
     if (!read_header(handles.png, handles.info, talk, header))
         return refuse(fmt::format("found a broken PNG ({}), need a whole one", talk.message));
     const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
-    if (pixels > static_cast<std::uint64_t>(most_pixels))
+    if (pixels > static_cast<std::uint64_t>(max_pixels))
         return refuse(
-            fmt::format("image expands to {} x {} pixels, limit {} pixels", header.width, header.height, most_pixels));
+            fmt::format("image expands to {} x {} pixels, limit {} pixels", header.width, header.height, max_pixels));
     // Deflate makes at most 1032 bytes of one: an image that cannot be in the file gets no memory.
     const std::uint64_t channels = header.kind == PNG_COLOR_TYPE_RGB || header.kind == PNG_COLOR_TYPE_RGBA ? 3 : 1;
     const std::uint64_t least = pixels * channels * static_cast<std::uint64_t>(header.depth) / 8 / 1032;

@@ -12,7 +12,7 @@ namespace fase::atlas {
 
 /// An image out of the bytes of a PNG file: 1 to 16 bits (of 16, the upper eight, rounded), grey, colours, palette,
 /// transparency, interlaced; colours as they are stored, without gamma. Format when the file is not whole and right:
-/// any wrong checksum, missing part, palette index that has no colour, or more than `most_pixels`. `where` names the
+/// any wrong checksum, missing part, palette index that has no colour, or more than `max_pixels`. `where` names the
 /// source in errors. Memory: the image, and of a palette's indices one byte a pixel.
 [[nodiscard]] Result<Image> read_png(std::span<const std::byte> bytes, const std::string& where);
 
@@ -20,7 +20,7 @@ namespace fase::atlas {
 [[nodiscard]] Result<Image> read_png_file(const std::string& path);
 
 /// A PNG file of 8 bits RGBA. The same image gives the same bytes with the same version of zlib. BadArgument for an
-/// image without pixels; Capacity for one with a side above most_page_side.
+/// image without pixels; Capacity for one with a side above max_page_side.
 [[nodiscard]] Result<std::vector<std::byte>> write_png(const Image& image);
 
 }  // namespace fase::atlas

@@ -106,7 +106,7 @@ void AnyStructure::build(std::span<const Move> boxes) {
         structure_);
 }
 
-void AnyStructure::become(AnyStructure other) {
+void AnyStructure::convert_to(AnyStructure other) {
     commit();
     std::vector<Move> all;
     all.reserve(size());
@@ -162,27 +162,27 @@ void AnyStructure::find_awake_pairs(std::vector<Pair>& out) const {
     std::visit([&](const auto& s) { broad::find_awake_pairs(s, out); }, structure_);
 }
 
-void AnyStructure::find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const {
-    find_pairs_of(askers, {}, out);
+void AnyStructure::find_pairs_of(std::span<const Move> query_boxes, std::vector<Pair>& out) const {
+    find_pairs_of(query_boxes, {}, out);
 }
 
-void AnyStructure::find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+void AnyStructure::find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                                  std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs_of(s, askers, is_asker, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_pairs_of(s, query_boxes, is_query, out); }, structure_);
 }
 
-void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> askers,
-                                 std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, askers, is_asker, out); }, structure_);
+void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> query_boxes,
+                                 std::span<const std::uint8_t> is_query, std::vector<Pair>& out) const {
+    std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, query_boxes, is_query, out); }, structure_);
 }
 
 void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const {
     if (size() == 0 || other.size() == 0) return;
     if (tasks.threads() == 1) return find_pairs_between(other, out);
     const bool asks = size() < other.size();
-    std::vector<Move> askers;
-    std::visit([&](const auto& s) { stored_boxes(s, askers); }, asks ? structure_ : other.structure_);
-    (asks ? other : *this).find_pairs_of(tasks, askers, {}, out);
+    std::vector<Move> query_boxes;
+    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); }, asks ? structure_ : other.structure_);
+    (asks ? other : *this).find_pairs_of(tasks, query_boxes, {}, out);
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
@@ -192,13 +192,13 @@ void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pai
                 broad::find_pairs_between(mine, *same_kind, out);
                 return;
             }
-            std::vector<Move> askers;
+            std::vector<Move> query_boxes;
             if (size() > other.size()) {
-                std::visit([&](const auto& theirs) { stored_boxes(theirs, askers); }, other.structure_);
-                broad::find_pairs_of(mine, askers, {}, out);
+                std::visit([&](const auto& theirs) { stored_boxes(theirs, query_boxes); }, other.structure_);
+                broad::find_pairs_of(mine, query_boxes, {}, out);
             } else {
-                stored_boxes(mine, askers);
-                other.find_pairs_of(askers, out);
+                stored_boxes(mine, query_boxes);
+                other.find_pairs_of(query_boxes, out);
             }
         },
         structure_);

@@ -6,7 +6,7 @@
 #include "fase/broad/cull.hpp"
 #include "fase/broad/registry.hpp"
 #include "fase/broad/stats.hpp"
-#include "fase/core/function_ref.hpp"
+#include "fase/core/detail/function_ref.hpp"
 #include "fase/core/result.hpp"
 
 namespace fase::broad {
@@ -47,7 +47,7 @@ public:
     /// The same for boxes that are likely to stay where they are; what is stored and found is no different.
     void build_still(std::span<const Move> boxes);
     /// Puts all that is stored into `other`, which is empty, and takes its place; awake or not as it is. Commits.
-    void become(AnyStructure other);
+    void convert_to(AnyStructure other);
     /// To be called after changes and before anything const.
     void commit();
     /// The same, shared among threads by structures that can; it makes no difference to what is stored.
@@ -59,12 +59,12 @@ public:
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
     /// Appends each pair of which one box is awake once, as find_pairs() does.
     void find_awake_pairs(std::vector<Pair>& out) const;
-    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_asker` does. With
+    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_query` does. With
     /// tasks, many askers that are stored here cost little more than find_pairs().
-    void find_pairs_of(std::span<const Move> askers, std::vector<Pair>& out) const;
-    void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+    void find_pairs_of(std::span<const Move> query_boxes, std::vector<Pair>& out) const;
+    void find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;
-    void find_pairs_of(TaskRunner& tasks, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+    void find_pairs_of(TaskRunner& tasks, std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;
     /// Appends each pair of a box stored here and one stored in `other` (which may be of another kind); cheapest for
     /// two trees of one kind. Proxies of both count as one numbering.

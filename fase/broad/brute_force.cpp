@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fase/broad/parted_pairs.hpp"
+#include "fase/broad/search/parted_pairs.hpp"
 
 namespace fase::broad {
 

@@ -2,8 +2,8 @@
 /// Every box against every box: the judge of all other structures.
 #include <array>
 
-#include "fase/broad/box_scan.hpp"
-#include "fase/core/check.hpp"
+#include "fase/broad/boxes/box_scan.hpp"
+#include "fase/core/detail/check.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {

@@ -1,6 +1,6 @@
 #pragma once
 /// A tree of binary space partition: planes through the faces of what is stored, few splits against balance.
-#include "fase/broad/plane_tree.hpp"
+#include "fase/broad/plane_tree/plane_tree.hpp"
 
 namespace fase::broad {
 

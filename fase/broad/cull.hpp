@@ -2,7 +2,7 @@
 /// Sorting out what is inside a region, what is partly, and what is not, whole branches at a time.
 #include <span>
 
-#include "fase/broad/nearest_first.hpp"
+#include "fase/broad/search/nearest_first.hpp"
 
 namespace fase::broad {
 

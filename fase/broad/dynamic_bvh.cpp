@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fase/broad/box_store.hpp"
-#include "fase/core/check.hpp"
+#include "fase/broad/boxes/box_store.hpp"
+#include "fase/core/detail/check.hpp"
 
 namespace fase::broad {
 namespace {
@@ -27,7 +27,7 @@ void DynamicBvh::insert(Proxy p, const Aabb& box) {
     FASE_ASSERT(entries_[p].place == Place::Nowhere);
     entries_[p].box = box;
     entries_[p].awake = true;
-    if (is_ordinary(box)) {
+    if (is_regular(box)) {
         put_in_list(pending_, p, Place::Pending);
     } else {
         put_in_list(apart_, p, Place::Apart);
@@ -41,13 +41,13 @@ void DynamicBvh::move(Proxy p, const Aabb& box) {
     entry.box = box;
     if (entry.leaving) return;
     if (entry.place == Place::Pending) {
-        if (is_ordinary(box)) return;
+        if (is_regular(box)) return;
         take_from_list(pending_, p);
         put_in_list(apart_, p, Place::Apart);
         return;
     }
     const bool stays =
-        entry.place == Place::Tree ? contains(nodes_[entry.where].box, box) && !is_empty(box) : !is_ordinary(box);
+        entry.place == Place::Tree ? contains(nodes_[entry.where].box, box) && !is_empty(box) : !is_regular(box);
     if (stays) return;
     entry.leaving = true;
     leaving_.push_back({p, box.lo - before.lo});
@@ -152,7 +152,7 @@ void DynamicBvh::sort_out_leaving() {
         Entry& entry = entries_[one.proxy];
         if (!entry.leaving) continue;
         entry.leaving = false;
-        if (is_ordinary(entry.box)) {
+        if (is_regular(entry.box)) {
             if (entry.place == Place::Tree) {
                 leaving_[kept++] = one;
             } else {

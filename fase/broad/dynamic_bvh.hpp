@@ -4,9 +4,9 @@
 #include <span>
 #include <utility>
 
-#include "fase/broad/build/binned_split.hpp"
-#include "fase/broad/local_stack.hpp"
-#include "fase/broad/pair_sink.hpp"
+#include "fase/broad/boxes/local_stack.hpp"
+#include "fase/broad/builders/binned_split.hpp"
+#include "fase/broad/search/pair_sink.hpp"
 #include "fase/broad/structure.hpp"
 #include "fase/core/tasks.hpp"
 

@@ -2,8 +2,8 @@
 /// All pairs of one structure, of two, and of a list of boxes against a structure: the best way that each one offers.
 #include <span>
 
-#include "fase/broad/pair_sink.hpp"
-#include "fase/broad/stored_askers.hpp"
+#include "fase/broad/search/pair_sink.hpp"
+#include "fase/broad/search/stored_queries.hpp"
 #include "fase/broad/structure.hpp"
 #include "fase/core/tasks.hpp"
 
@@ -30,32 +30,33 @@ concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& ot
 
 /// A structure that answers askers faster than one query an asker can; the contract is that of broad::find_pairs_of().
 template <class S>
-concept AnswersAskers = Structure<S> &&
-    requires(const S& c, std::span<const Move> askers, std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
-    c.find_pairs_of(askers, is_asker, out);
+concept AnswersAskers = Structure<S> && requires(const S& c, std::span<const Move> query_boxes,
+                                                 std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
+    c.find_pairs_of(query_boxes, is_query, out);
 };
 
 /// Appends, for each asker, a pair with every stored box that its box overlaps; never with itself, should it be stored.
 /// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all; no proxy asks
 /// twice. When two askers are both stored here, their pair is found from both sides and so appears twice, unless
-/// `is_asker` (by proxy; not 0: asks, here or in another call; proxies past its end do not) marks them: then only the
+/// `is_query` (by proxy; not 0: asks, here or in another call; proxies past its end do not) marks them: then only the
 /// smaller asks. The structure's own way, or one query an asker.
 template <Structure S>
-void find_pairs_of(const S& structure, std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+void find_pairs_of(const S& structure, std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                    std::vector<Pair>& out) {
-    if constexpr (AnswersAskers<S>) return structure.find_pairs_of(askers, is_asker, out);
+    if constexpr (AnswersAskers<S>) return structure.find_pairs_of(query_boxes, is_query, out);
     PairSink sink(out);
-    for (const Move& asker : askers) {
-        const Proxy p = asker.proxy;
-        structure.traverse(BoxRegion{asker.box}, [&](Proxy q, const Aabb&) {
-            const bool asked_by_q = q < p && q < is_asker.size() && is_asker[q] != 0;
+    for (const Move& query_box : query_boxes) {
+        const Proxy p = query_box.proxy;
+        structure.traverse(BoxRegion{query_box.box}, [&](Proxy q, const Aabb&) {
+            const bool asked_by_q = q < p && q < is_query.size() && is_query[q] != 0;
             if (p != q && !asked_by_q) sink.add(p, q);
             return true;
         });
     }
 }
-template <Structure S> void find_pairs_of(const S& structure, std::span<const Move> askers, std::vector<Pair>& out) {
-    find_pairs_of(structure, askers, {}, out);
+template <Structure S>
+void find_pairs_of(const S& structure, std::span<const Move> query_boxes, std::vector<Pair>& out) {
+    find_pairs_of(structure, query_boxes, {}, out);
 }
 
 /// All that is stored, appended in the structure's own order.
@@ -105,13 +106,14 @@ template <Structure S> void find_awake_pairs(const S& structure, std::vector<Pai
 /// Asks for one asker after the other, as find_pairs_of without tasks does; the askers are cut into ranges for the
 /// threads, and the pairs appended in the order of the askers.
 template <Structure S>
-void ask_one_by_one(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
-                    std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+void ask_one_by_one(TaskRunner& tasks, const S& structure, std::span<const Move> query_boxes,
+                    std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
     constexpr std::size_t grain = 512;
-    if (tasks.threads() == 1 || askers.size() <= grain) return find_pairs_of(structure, askers, is_asker, out);
-    std::vector<std::vector<Pair>> found((askers.size() + grain - 1) / grain);
-    parallel_ranges(tasks, askers.size(), grain, [&](std::size_t begin, std::size_t end) {
-        find_pairs_of(structure, askers.subspan(begin, end - begin), is_asker, found[begin / grain]);
+    if (tasks.threads() == 1 || query_boxes.size() <= grain)
+        return find_pairs_of(structure, query_boxes, is_query, out);
+    std::vector<std::vector<Pair>> found((query_boxes.size() + grain - 1) / grain);
+    parallel_ranges(tasks, query_boxes.size(), grain, [&](std::size_t begin, std::size_t end) {
+        find_pairs_of(structure, query_boxes.subspan(begin, end - begin), is_query, found[begin / grain]);
     });
     for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
 }
@@ -138,20 +140,20 @@ template <Structure S> void find_pairs(TaskRunner& tasks, const S& structure, st
 /// with the very boxes that are stored, a structure that finds its own pairs finds them all at once, and those of the
 /// others are dropped: for a tree in which everything asks four times faster.
 template <Structure S>
-void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> askers,
-                   std::span<const std::uint8_t> is_asker, std::vector<Pair>& out) {
+void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> query_boxes,
+                   std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
     if constexpr (FindsOwnPairs<S>) {
-        if (askers.size() >= 256 && 3 * askers.size() >= structure.size()) {
-            const StoredAskers known = stored_askers(structure, askers);
+        if (query_boxes.size() >= 256 && 3 * query_boxes.size() >= structure.size()) {
+            const StoredQueries known = stored_queries(structure, query_boxes);
             if (3 * known.count >= structure.size()) {
                 const std::size_t first = out.size();
                 find_pairs(tasks, structure, out);
-                keep_pairs_of(known, is_asker, out, first);
-                return ask_one_by_one(tasks, structure, known.others, is_asker, out);
+                keep_pairs_of(known, is_query, out, first);
+                return ask_one_by_one(tasks, structure, known.others, is_query, out);
             }
         }
     }
-    ask_one_by_one(tasks, structure, askers, is_asker, out);
+    ask_one_by_one(tasks, structure, query_boxes, is_query, out);
 }
 
 /// Appends every pair of a box stored in `a` and one stored in `b` that overlap. Proxies of both count as one
@@ -164,13 +166,13 @@ template <Structure A, Structure B> void find_pairs_between(const A& a, const B&
         // Trees: below that share, measured, asking is as fast. Who asks in a better order than any says so.
         if (requires { A::asks_in_order; } || few >= many / 16) return a.find_pairs_with(b, out);
     }
-    std::vector<Move> askers;
+    std::vector<Move> query_boxes;
     if (a_asks) {
-        stored_boxes(a, askers);
-        find_pairs_of(b, askers, out);
+        stored_boxes(a, query_boxes);
+        find_pairs_of(b, query_boxes, out);
     } else {
-        stored_boxes(b, askers);
-        find_pairs_of(a, askers, out);
+        stored_boxes(b, query_boxes);
+        find_pairs_of(a, query_boxes, out);
     }
 }
 

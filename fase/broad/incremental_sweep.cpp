@@ -1,9 +1,9 @@
 /// How the lists and the set of pairs follow the boxes.
 #include "fase/broad/incremental_sweep.hpp"
 
-#include "fase/broad/build/radix_sort.hpp"
-#include "fase/broad/pair_sink.hpp"
-#include "fase/broad/sweep_axis.hpp"
+#include "fase/broad/builders/radix_sort.hpp"
+#include "fase/broad/search/pair_sink.hpp"
+#include "fase/broad/sweep/axis.hpp"
 
 namespace fase::broad {
 namespace {
@@ -58,7 +58,7 @@ void IncrementalSweep::sort_out_noted() {
     for (const Proxy p : noted_) {
         Spot& spot = spots_[p];
         spot.noted = false;
-        const bool wanted = store_.holds(p) && !store_.is_odd(p);
+        const bool wanted = store_.holds(p) && !store_.is_unbounded(p);
         if (wanted && spot.listed) {
             if (!same_bits(store_.box(p), spot.box)) moved_.push_back(p);
         } else if (wanted) {
@@ -73,7 +73,7 @@ void IncrementalSweep::sort_out_noted() {
 bool IncrementalSweep::worth_trying() const {
     if (born_.size() > 16 + listed_ / 256 || dead_.size() > 16 + listed_ / 4) return false;
     constexpr double ends_a_move = 32;  // what a box costs that moves but passes nothing
-    if (ends_a_move * static_cast<double>(moved_.size()) > most_swaps()) return false;
+    if (ends_a_move * static_cast<double>(moved_.size()) > max_swaps()) return false;
     return pause_ == 0 || moved_.size() < hopeless_ / 2;
 }
 
@@ -112,7 +112,7 @@ void IncrementalSweep::commit() {
 /// All is read from the store; what the lists and pairs were does not matter.
 void IncrementalSweep::sweep_anew() {
     ++sweeps_;
-    const std::span<const Move> boxes = store_.ordinary();
+    const std::span<const Move> boxes = store_.regular();
     axis_ = best_sweep_axis(boxes, axis_);
     keys_.resize(boxes.size());
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
@@ -220,7 +220,7 @@ void IncrementalSweep::pair_born() {
 
 /// False: it takes too long, or the first of them say that it will; the lists are in no good state then.
 bool IncrementalSweep::shift_moved() {
-    const auto most = static_cast<std::size_t>(most_swaps());
+    const auto most = static_cast<std::size_t>(max_swaps());
     std::size_t swaps = 0;
     for (std::size_t i = 0; i < moved_.size(); ++i) {
         const Aabb to = store_.box(moved_[i]);
@@ -304,7 +304,7 @@ void IncrementalSweep::shift_up(int axis, End end, std::size_t& swaps) {
 void IncrementalSweep::find_pairs(std::vector<Pair>& out) const {
     {
         PairSink sink(out);
-        store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
+        store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     out.insert(out.end(), pairs_.pairs().begin(), pairs_.pairs().end());
 }
@@ -313,7 +313,7 @@ void IncrementalSweep::find_awake_pairs(std::vector<Pair>& out) const {
     if (store_.resting() == 0) return find_pairs(out);
     if (store_.resting() == store_.size()) return;
     PairSink sink(out);
-    store_.odd_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
+    store_.unbounded_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
     for (const Pair pair : pairs_.pairs())
         if (store_.is_awake(pair.a) || store_.is_awake(pair.b)) sink.add(pair.a, pair.b);
 }
@@ -332,8 +332,8 @@ std::string IncrementalSweep::broken_invariant() const {
     if (!noted_.empty()) return {};  // waits for commit()
     if (std::string wrong = tree_.broken_invariant(); !wrong.empty()) return wrong;
     if (std::string wrong = pairs_.broken_invariant(); !wrong.empty()) return wrong;
-    if (listed_ != store_.ordinary().size() || listed_ != tree_.size()) return "the boxes are miscounted";
-    for (const Move& m : store_.ordinary()) {
+    if (listed_ != store_.regular().size() || listed_ != tree_.size()) return "the boxes are miscounted";
+    for (const Move& m : store_.regular()) {
         const Spot& spot = spots_[m.proxy];
         if (!spot.listed || !(spot.box == m.box)) return "the lists have an old box";
         if (tree_.boxes().proxy(spot.row) != m.proxy || !(tree_.boxes().box(spot.row) == m.box))
@@ -351,7 +351,7 @@ std::string IncrementalSweep::broken_invariant() const {
         }
     }
     std::size_t pairs = 0;
-    for (const Move& m : store_.ordinary()) {
+    for (const Move& m : store_.regular()) {
         tree_.traverse(BoxRegion{m.box}, [&](Proxy q, const Aabb&) {
             pairs += m.proxy < q ? 1 : 0;
             return true;

@@ -1,8 +1,8 @@
 #pragma once
 /// Sorted lists of where boxes begin and end on three axes, and the pairs, kept from step to step.
-#include "fase/broad/box_store.hpp"
-#include "fase/broad/pair_table.hpp"
-#include "fase/broad/run_tree.hpp"
+#include "fase/broad/boxes/box_store.hpp"
+#include "fase/broad/sweep/pair_table.hpp"
+#include "fase/broad/sweep/run_tree.hpp"
 
 namespace fase::broad {
 
@@ -36,7 +36,7 @@ public:
     void commit();
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
-        if (store_.traverse_odd(region, visit)) tree_.traverse(region, visit);
+        if (store_.traverse_unbounded(region, visit)) tree_.traverse(region, visit);
     }
 
     /// Copies what is kept.
@@ -44,16 +44,16 @@ public:
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
-        if (store_.nearest_odd(measure, limit, visit)) tree_.nearest_first(measure, limit, visit);
+        if (store_.nearest_unbounded(measure, limit, visit)) tree_.nearest_first(measure, limit, visit);
     }
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const {
-        for (const Move& m : store_.odd())
+        for (const Move& m : store_.unbounded())
             if (region.touches(m.box)) take(std::span<const Proxy>(&m.proxy, 1), region.contains(m.box));
         tree_.cull(region, take);
     }
     template <class Visit> void for_each_leaf(Visit&& visit) const {
         std::vector<Proxy> scratch;
-        store_.odd_leaf(scratch, visit);
+        store_.unbounded_leaf(scratch, visit);
         tree_.for_each_leaf(visit);
     }
 
@@ -106,7 +106,7 @@ private:
     void note(Proxy p);
     void sort_out_noted();
     [[nodiscard]] bool worth_trying() const;
-    [[nodiscard]] double most_swaps() const { return settings_.patience * static_cast<double>(listed_) + 4096; }
+    [[nodiscard]] double max_swaps() const { return settings_.patience * static_cast<double>(listed_) + 4096; }
     void sweep_anew();
     void fill_tree_from_lists();
     void make_lists();

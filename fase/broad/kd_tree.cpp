@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fase/broad/build/surface_plane.hpp"
+#include "fase/broad/builders/surface_plane.hpp"
 
 namespace fase::broad {
 

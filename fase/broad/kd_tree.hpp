@@ -1,6 +1,6 @@
 #pragma once
 /// A kD-tree: planes across the axes, placed by surface or by the middle box.
-#include "fase/broad/plane_tree.hpp"
+#include "fase/broad/plane_tree/plane_tree.hpp"
 
 namespace fase::broad {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fase/broad/build/cell_pairs.hpp"
-#include "fase/broad/parted_pairs.hpp"
+#include "fase/broad/builders/cell_pairs.hpp"
+#include "fase/broad/search/parted_pairs.hpp"
 
 namespace fase::broad {
 
@@ -32,7 +32,7 @@ LooseOctree::Record LooseOctree::record_of(const Aabb& box, std::uint32_t row) c
 }
 
 void LooseOctree::rebuild() {
-    const std::span<const Move> rows = store_.ordinary();
+    const std::span<const Move> rows = store_.regular();
     frame_ = CellFrame<3>({0, 1, 2}, settings_.bounds, rows);
     if (rows.empty()) return tree_.clear();
     tree_.begin();
@@ -79,14 +79,14 @@ bool LooseOctree::try_split(const Task& task) {
 
 void LooseOctree::find_pairs(std::vector<Pair>& out) const {
     PairSink sink(out);
-    store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
+    store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     find_pairs_near_leaves(tree_, {0, tree_.leaves().size()}, false, sink);
 }
 
 void LooseOctree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     {
         PairSink sink(out);
-        store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
+        store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     const std::size_t leaves = tree_.leaves().size();
     find_in_parts(tasks, parts_of(leaves), out, [&](std::size_t i, std::vector<Pair>& found) {
@@ -98,7 +98,7 @@ void LooseOctree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
 void LooseOctree::find_awake_pairs(std::vector<Pair>& out) const {
     if (store_.resting() == 0) return find_pairs(out);
     PairSink sink(out);
-    store_.odd_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
+    store_.unbounded_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
     if (!tree_.empty() && tree_.nodes()[CellTree::root].awake)
         find_pairs_near_leaves(tree_, {0, tree_.leaves().size()}, true, sink);
 }

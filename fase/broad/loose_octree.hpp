@@ -1,6 +1,6 @@
 #pragma once
 /// Cubes of twice the size of their place: each box is in one of them.
-#include "fase/broad/build/cell_structure.hpp"
+#include "fase/broad/builders/cell_structure.hpp"
 
 namespace fase::broad {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Cubes that are split into eight where boxes are many.
-#include "fase/broad/build/bucket_tree.hpp"
+#include "fase/broad/builders/bucket_tree.hpp"
 
 namespace fase::broad {
 

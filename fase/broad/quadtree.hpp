@@ -1,6 +1,6 @@
 #pragma once
 /// Squares that are split into four where boxes are many: the classical tree for worlds that are wide and flat.
-#include "fase/broad/build/bucket_tree.hpp"
+#include "fase/broad/builders/bucket_tree.hpp"
 
 namespace fase::broad {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fase/broad/pair_sink.hpp"
-#include "fase/broad/row_grid_chunks.hpp"
+#include "fase/broad/row_grid/chunks.hpp"
+#include "fase/broad/search/pair_sink.hpp"
 
 namespace fase::broad {
 namespace {
@@ -13,11 +13,11 @@ using row_grid::PairBlock;
 
 /// What is searched: each set of records within itself, and the fewer against the others.
 struct Chunks {
-    const RowPart &moving, &resting;
+    const RowPartition &moving, &resting;
     bool moving_ask;  // the fewer ask the others
     std::size_t first_resting, first_asking, count;
 
-    Chunks(const RowPart& m, const RowPart& r, bool resting_too)
+    Chunks(const RowPartition& m, const RowPartition& r, bool resting_too)
         : moving(m), resting(r), moving_ask(m.size() <= r.size()) {
         first_resting = parts(moving);
         first_asking = first_resting + (resting_too ? parts(resting) : 0);
@@ -30,29 +30,29 @@ struct Chunks {
             find_own(resting, chunk - first_resting, out);
         } else {
             with_records(few(), chunk - first_asking, [&](std::size_t k, std::size_t begin, std::size_t end) {
-                for_askers(few().set(k).view(), begin, end, [&](std::span<const Move> askers) {
-                    many().find_asked_pairs({askers, {}}, out);
+                for_queries(few().set(k).view(), begin, end, [&](std::span<const Move> query_boxes) {
+                    many().find_query_pairs({query_boxes, {}}, out);
                 });
             });
         }
     }
 
 private:
-    [[nodiscard]] const RowPart& few() const { return moving_ask ? moving : resting; }
-    [[nodiscard]] const RowPart& many() const { return moving_ask ? resting : moving; }
+    [[nodiscard]] const RowPartition& few() const { return moving_ask ? moving : resting; }
+    [[nodiscard]] const RowPartition& many() const { return moving_ask ? resting : moving; }
     static std::size_t parts(const RowSet& set) { return row_grid::RowCuts(set.levels()).chunks(); }
-    static std::size_t parts(const RowPart& part) {
+    static std::size_t parts(const RowPartition& part) {
         std::size_t sum = 0;
         for (std::size_t k = 0; k < part.sets(); ++k) sum += parts(part.set(k));
         return sum;
     }
-    template <class F> static void with_records(const RowPart& part, std::size_t chunk, F&& f) {
+    template <class F> static void with_records(const RowPartition& part, std::size_t chunk, F&& f) {
         std::size_t k = 0;
         for (; chunk >= parts(part.set(k)); ++k) chunk -= parts(part.set(k));
         const RecordSpan records = row_grid::RowCuts(part.set(k).levels())[chunk];
         f(k, records.begin, records.end);
     }
-    static void find_own(const RowPart& part, std::size_t chunk, PairBlock& out) {
+    static void find_own(const RowPartition& part, std::size_t chunk, PairBlock& out) {
         with_records(part, chunk, [&](std::size_t k, std::size_t begin, std::size_t end) {
             part.find_own_pairs(k, begin, end, out);
         });
@@ -60,17 +60,17 @@ private:
 };
 
 /// The pairs of each odd box of `part` with the ordinary ones of `others`.
-void ask_odd(const RowPart& part, const RowPart& others, std::vector<Pair>& out) {
-    if (part.odd().empty()) return;
+void query_unbounded(const RowPartition& part, const RowPartition& others, std::vector<Pair>& out) {
+    if (part.unbounded().empty()) return;
     PairBlock block(out);
-    others.find_asked_pairs({part.odd(), {}}, block);
+    others.find_query_pairs({part.unbounded(), {}}, block);
 }
 
 /// The pairs of an odd box of each.
-void find_odd_between(const RowPart& a, const RowPart& b, std::vector<Pair>& out) {
+void find_unbounded_pairs_between(const RowPartition& a, const RowPartition& b, std::vector<Pair>& out) {
     PairSink sink(out);
-    for (const Move& m : a.odd())
-        for (const Move& other : b.odd())
+    for (const Move& m : a.unbounded())
+        for (const Move& other : b.unbounded())
             if (m.proxy != other.proxy && overlaps(m.box, other.box)) sink.add(m.proxy, other.proxy);
 }
 
@@ -78,7 +78,7 @@ void find_odd_between(const RowPart& a, const RowPart& b, std::vector<Pair>& out
 
 void RowGrid::set_awake(Proxy p, bool awake) {
     if (awake == is_awake(p)) return;
-    RowPart &from = awake ? resting_ : moving_, &to = awake ? moving_ : resting_;
+    RowPartition &from = awake ? resting_ : moving_, &to = awake ? moving_ : resting_;
     const Aabb box = from.box(p);
     from.erase(p);
     to.insert(p, box);
@@ -107,58 +107,58 @@ void RowGrid::build_still(std::span<const Move> boxes) {
 }
 
 void RowGrid::find(TaskRunner* tasks, bool resting_too, std::vector<Pair>& out) const {
-    find_odd(resting_too, out);
+    find_unbounded_pairs(resting_too, out);
     const Chunks chunks(moving_, resting_, resting_too);
     row_grid::find_in_chunks(tasks, chunks.count, out,
                              [&](std::size_t chunk, PairBlock& block) { chunks.find(chunk, block); });
 }
 
-void RowGrid::find_odd(bool resting_too, std::vector<Pair>& out) const {
-    if (moving_.odd().empty() && resting_.odd().empty()) return;
-    for (const RowPart* part : {&moving_, &resting_}) {
+void RowGrid::find_unbounded_pairs(bool resting_too, std::vector<Pair>& out) const {
+    if (moving_.unbounded().empty() && resting_.unbounded().empty()) return;
+    for (const RowPartition* part : {&moving_, &resting_}) {
         if (part == &resting_ && !resting_too) continue;
-        ask_odd(*part, *part, out);
+        query_unbounded(*part, *part, out);
         PairSink sink(out);
-        const std::span<const Move> odd = part->odd();
-        for (std::size_t i = 0; i < odd.size(); ++i)
-            for (std::size_t k = i + 1; k < odd.size(); ++k)
-                if (overlaps(odd[i].box, odd[k].box)) sink.add(odd[i].proxy, odd[k].proxy);
+        const std::span<const Move> unbounded = part->unbounded();
+        for (std::size_t i = 0; i < unbounded.size(); ++i)
+            for (std::size_t k = i + 1; k < unbounded.size(); ++k)
+                if (overlaps(unbounded[i].box, unbounded[k].box)) sink.add(unbounded[i].proxy, unbounded[k].proxy);
     }
-    ask_odd(moving_, resting_, out);
-    ask_odd(resting_, moving_, out);
-    find_odd_between(moving_, resting_, out);
+    query_unbounded(moving_, resting_, out);
+    query_unbounded(resting_, moving_, out);
+    find_unbounded_pairs_between(moving_, resting_, out);
 }
 
-void RowGrid::find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+void RowGrid::find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                             std::vector<Pair>& out) const {
-    for (const RowPart* part : {&moving_, &resting_}) {
-        if (!part->odd().empty()) {
+    for (const RowPartition* part : {&moving_, &resting_}) {
+        if (!part->unbounded().empty()) {
             PairSink sink(out);
-            for (const Move& m : askers) {
-                for (const Move& other : part->odd()) {
+            for (const Move& m : query_boxes) {
+                for (const Move& other : part->unbounded()) {
                     const Proxy q = other.proxy;
-                    const bool asked_by_q = q < m.proxy && q < is_asker.size() && is_asker[q] != 0;
+                    const bool asked_by_q = q < m.proxy && q < is_query.size() && is_query[q] != 0;
                     if (q != m.proxy && !asked_by_q && overlaps(m.box, other.box)) sink.add(m.proxy, q);
                 }
             }
         }
         PairBlock block(out);
-        part->find_asked_pairs({askers, is_asker}, block);
+        part->find_query_pairs({query_boxes, is_query}, block);
     }
 }
 
 void RowGrid::find_pairs_with(const RowGrid& other, std::vector<Pair>& out) const {
-    for (const RowPart* mine : {&moving_, &resting_}) {
-        for (const RowPart* theirs : {&other.moving_, &other.resting_}) {
-            ask_odd(*mine, *theirs, out);
-            ask_odd(*theirs, *mine, out);
-            find_odd_between(*mine, *theirs, out);
+    for (const RowPartition* mine : {&moving_, &resting_}) {
+        for (const RowPartition* theirs : {&other.moving_, &other.resting_}) {
+            query_unbounded(*mine, *theirs, out);
+            query_unbounded(*theirs, *mine, out);
+            find_unbounded_pairs_between(*mine, *theirs, out);
             PairBlock block(out);
-            const RowPart &few = mine->size() <= theirs->size() ? *mine : *theirs,
-                          &many = mine->size() <= theirs->size() ? *theirs : *mine;
+            const RowPartition &few = mine->size() <= theirs->size() ? *mine : *theirs,
+                               &many = mine->size() <= theirs->size() ? *theirs : *mine;
             for (std::size_t k = 0; k < few.sets(); ++k)
-                for_askers(few.set(k).view(), 0, few.set(k).size(), [&](std::span<const Move> askers) {
-                    many.find_asked_pairs({askers, {}}, block);
+                for_queries(few.set(k).view(), 0, few.set(k).size(), [&](std::span<const Move> query_boxes) {
+                    many.find_query_pairs({query_boxes, {}}, block);
                 });
         }
     }
@@ -171,7 +171,7 @@ std::size_t RowGrid::nodes() const {
 }
 
 std::string RowGrid::broken_invariant() const {
-    for (const RowPart* part : {&moving_, &resting_})
+    for (const RowPartition* part : {&moving_, &resting_})
         if (std::string broken = part->broken_invariant(); !broken.empty()) return broken;
     for (std::size_t k = 0; k < moving_.sets(); ++k) {
         const RowView set = moving_.set(k).view();

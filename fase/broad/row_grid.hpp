@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fase/broad/row_part.hpp"
+#include "fase/broad/row_grid/partition.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -67,7 +67,7 @@ public:
     /// The same pairs as find_pairs(out), in the same order for any number of threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const { find(&tasks, true, out); }
     /// As broad::find_pairs_of(): each asker against the ranges of the rows that it reaches.
-    void find_pairs_of(std::span<const Move> askers, std::span<const std::uint8_t> is_asker,
+    void find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;
 
     /// Every pair of a box of this grid and one of `other`: the fewer ask, in the order in which they lie. Proxies of
@@ -87,16 +87,16 @@ public:
 
 private:
     Settings settings_;
-    RowPart moving_, resting_;
+    RowPartition moving_, resting_;
 
-    [[nodiscard]] RowPart& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
+    [[nodiscard]] RowPartition& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
     template <class ProxyOf, class BoxOf>
     void move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void commit(TaskRunner* tasks);
     void find(TaskRunner* tasks, bool resting_too, std::vector<Pair>& out) const;
-    void find_odd(bool resting_too, std::vector<Pair>& out) const;
+    void find_unbounded_pairs(bool resting_too, std::vector<Pair>& out) const;
     template <class F> void for_each_set(F&& f) const {
-        for (const RowPart* part : {&moving_, &resting_})
+        for (const RowPartition* part : {&moving_, &resting_})
             for (std::size_t k = 0; k < part->sets(); ++k) f(part->set(k));
     }
 };
@@ -116,8 +116,8 @@ void RowGrid::move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& prox
 
 template <class Visit> void RowGrid::for_each_leaf(Visit&& visit) const {
     std::vector<Proxy> proxies;
-    for (const RowPart* part : {&moving_, &resting_})
-        for (const Move& m : part->odd()) proxies.push_back(m.proxy);
+    for (const RowPartition* part : {&moving_, &resting_})
+        for (const Move& m : part->unbounded()) proxies.push_back(m.proxy);
     if (!proxies.empty()) visit(Leaf{Aabb::everything(), proxies, 0});
     for_each_set([&](const RowSet& boxes) {
         const RowView set = boxes.view();

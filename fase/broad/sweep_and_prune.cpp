@@ -1,10 +1,10 @@
 /// How the rows are sorted, and swept against each other.
 #include "fase/broad/sweep_and_prune.hpp"
 
-#include "fase/broad/build/radix_sort.hpp"
-#include "fase/broad/pair_sink.hpp"
-#include "fase/broad/parted_pairs.hpp"
-#include "fase/broad/sweep_axis.hpp"
+#include "fase/broad/builders/radix_sort.hpp"
+#include "fase/broad/search/pair_sink.hpp"
+#include "fase/broad/search/parted_pairs.hpp"
+#include "fase/broad/sweep/axis.hpp"
 
 namespace fase::broad {
 
@@ -14,9 +14,9 @@ void SweepAndPrune::insert(Proxy p, const Aabb& box) {
 }
 
 void SweepAndPrune::move(Proxy p, const Aabb& box) {
-    const bool was_odd = store_.is_odd(p);
+    const bool was_unbounded = store_.is_unbounded(p);
     store_.move(p, box);
-    need(row_of(p), was_odd == store_.is_odd(p) ? Work::Sort : Work::Collect);
+    need(row_of(p), was_unbounded == store_.is_unbounded(p) ? Work::Sort : Work::Collect);
 }
 
 void SweepAndPrune::erase(Proxy p) {
@@ -38,7 +38,7 @@ void SweepAndPrune::clear() {
 
 void SweepAndPrune::commit() {
     if (awake_.work == Work::None && resting_.work == Work::None) return;
-    const int axis = settings_.axis >= 0 ? settings_.axis % 3 : best_sweep_axis(store_.ordinary(), axis_);
+    const int axis = settings_.axis >= 0 ? settings_.axis % 3 : best_sweep_axis(store_.regular(), axis_);
     if (axis != axis_) {
         need(awake_, Work::Sort);
         need(resting_, Work::Sort);
@@ -51,9 +51,9 @@ void SweepAndPrune::commit() {
 /// A row in which boxes only moved is sorted as it stands, unless reading all boxes in their order is faster.
 void SweepAndPrune::sort(Row& row, bool awake) {
     const auto key = [&](std::uint32_t place) {
-        return std::uint64_t{ordered_key(store_.ordinary()[place].box.lo[axis_])} << 32 | place;
+        return std::uint64_t{ordered_key(store_.regular()[place].box.lo[axis_])} << 32 | place;
     };
-    const auto all = static_cast<std::uint32_t>(store_.ordinary().size());
+    const auto all = static_cast<std::uint32_t>(store_.regular().size());
     keys_.clear();
     if (row.work == Work::Sort && row.tree.size() < all / 4) {
         for (const Proxy p : row.tree.boxes().proxies()) keys_.push_back(key(store_.place(p)));
@@ -62,12 +62,12 @@ void SweepAndPrune::sort(Row& row, bool awake) {
         for (std::uint32_t i = 0; i < keys_.size(); ++i) keys_[i] = key(i);
     } else {
         for (std::uint32_t i = 0; i < all; ++i)
-            if (store_.is_awake(store_.ordinary()[i].proxy) == awake) keys_.push_back(key(i));
+            if (store_.is_awake(store_.regular()[i].proxy) == awake) keys_.push_back(key(i));
     }
     radix_sort(keys_, 32, scratch_);
     row.tree.resize(keys_.size());
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-        const Move& m = store_.ordinary()[static_cast<std::uint32_t>(keys_[i])];
+        const Move& m = store_.regular()[static_cast<std::uint32_t>(keys_[i])];
         row.tree.put(i, m.proxy, m.box);
     }
     row.tree.close();
@@ -103,7 +103,7 @@ template <class Do> void SweepAndPrune::for_each_part(std::size_t grain, bool aw
 void SweepAndPrune::find_pairs(std::vector<Pair>& out) const {
     {
         PairSink sink(out);
-        store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
+        store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     for_each_part(store_.size() + RunTree::run, false, [&](const Part& part) { sweep(part, out); });
 }
@@ -112,7 +112,7 @@ void SweepAndPrune::find_awake_pairs(std::vector<Pair>& out) const {
     if (store_.resting() == store_.size()) return;
     {
         PairSink sink(out);
-        store_.odd_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
+        store_.unbounded_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     for_each_part(store_.size() + RunTree::run, true, [&](const Part& part) { sweep(part, out); });
 }
@@ -120,7 +120,7 @@ void SweepAndPrune::find_awake_pairs(std::vector<Pair>& out) const {
 void SweepAndPrune::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     {
         PairSink sink(out);
-        store_.odd_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
+        store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     constexpr std::size_t grain = 8 * RunTree::run;
     std::vector<Part> parts;
@@ -145,13 +145,14 @@ std::string SweepAndPrune::broken_invariant() const {
         if (row.work != Work::None) continue;  // waits for commit()
         if (std::string wrong = row.tree.broken_invariant(); !wrong.empty()) return wrong;
         std::size_t wanted = 0;
-        for (const Move& m : store_.ordinary()) wanted += store_.is_awake(m.proxy) == awake ? 1 : 0;
+        for (const Move& m : store_.regular()) wanted += store_.is_awake(m.proxy) == awake ? 1 : 0;
         if (row.tree.size() != wanted) return "a row does not hold all of its boxes";
         const BoxColumns& boxes = row.tree.boxes();
         std::vector<std::uint8_t> seen;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const Proxy p = boxes.proxy(i);
-            if (!store_.holds(p) || store_.is_odd(p) || store_.is_awake(p) != awake) return "a box is in a wrong row";
+            if (!store_.holds(p) || store_.is_unbounded(p) || store_.is_awake(p) != awake)
+                return "a box is in a wrong row";
             if (!(boxes.box(i) == store_.box(p))) return "a row holds an old box";
             if (i > 0 && !(boxes.box(i - 1).lo[axis_] <= boxes.box(i).lo[axis_])) return "a row is not sorted";
             if (p >= seen.size()) seen.resize(p + std::size_t{1});

@@ -2,8 +2,8 @@
 /// Boxes sorted along one axis, each tested against those that begin within it.
 #include <utility>
 
-#include "fase/broad/box_store.hpp"
-#include "fase/broad/run_tree.hpp"
+#include "fase/broad/boxes/box_store.hpp"
+#include "fase/broad/sweep/run_tree.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -38,7 +38,7 @@ public:
     void commit();
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
-        if (store_.traverse_odd(region, visit) && awake_.tree.traverse(region, visit))
+        if (store_.traverse_unbounded(region, visit) && awake_.tree.traverse(region, visit))
             resting_.tree.traverse(region, visit);
     }
 
@@ -49,18 +49,18 @@ public:
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
-        if (store_.nearest_odd(measure, limit, visit) && awake_.tree.nearest_first(measure, limit, visit))
+        if (store_.nearest_unbounded(measure, limit, visit) && awake_.tree.nearest_first(measure, limit, visit))
             resting_.tree.nearest_first(measure, limit, visit);
     }
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const {
-        for (const Move& m : store_.odd())
+        for (const Move& m : store_.unbounded())
             if (region.touches(m.box)) take(std::span<const Proxy>(&m.proxy, 1), region.contains(m.box));
         awake_.tree.cull(region, take);
         resting_.tree.cull(region, take);
     }
     template <class Visit> void for_each_leaf(Visit&& visit) const {
         std::vector<Proxy> scratch;
-        store_.odd_leaf(scratch, visit);
+        store_.unbounded_leaf(scratch, visit);
         awake_.tree.for_each_leaf(visit);
         resting_.tree.for_each_leaf(visit);
     }

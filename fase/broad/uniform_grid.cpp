@@ -18,7 +18,7 @@ double longest_side(const Aabb& box) {
 /// boxes and somewhat more, larger where there is so much room that most cells would hold less than two.
 GridFrame UniformGrid::fitting_frame() const {
     constexpr std::size_t most = 512;
-    const std::span<const Move> boxes = store_.ordinary();
+    const std::span<const Move> boxes = store_.regular();
     if (boxes.empty()) return {};
     const std::size_t count = std::min(most, boxes.size());
     std::array<double, most> sides;
@@ -68,29 +68,29 @@ void UniformGrid::commit() {
     large_.clear();
     entering_.clear();
     cells_.clear();
-    level_of_.resize(store_.ordinary().size());
+    level_of_.resize(store_.regular().size());
     enter_boxes(true);
     if (store_.resting() != 0) enter_boxes(false);
     fill_cells();
 }
 
 void UniformGrid::enter_boxes(bool awake) {
-    const auto count = static_cast<std::uint32_t>(store_.ordinary().size());
+    const auto count = static_cast<std::uint32_t>(store_.regular().size());
     for (std::uint32_t place = 0; place < count; ++place) {
-        if (store_.resting() != 0 && store_.is_awake(store_.ordinary()[place].proxy) != awake) continue;
+        if (store_.resting() != 0 && store_.is_awake(store_.regular()[place].proxy) != awake) continue;
         enter(place);
     }
     if (!awake) return;
-    for (ScanRange& cell : cells_) cell.end_of_askers = cell.end;  // so far: how many
+    for (ScanRange& cell : cells_) cell.queries_end = cell.end;  // so far: how many
 }
 
 void UniformGrid::enter(std::uint32_t place) {
-    const Move& m = store_.ordinary()[place];
+    const Move& m = store_.regular()[place];
     const double size = longest_side(m.box);
     std::size_t l = 0;
-    while (l < most_levels && size > levels_[l].frame.side) ++l;
+    while (l < max_levels && size > levels_[l].frame.side) ++l;
     level_of_[place] = static_cast<std::uint8_t>(l);
-    if (l == most_levels) {
+    if (l == max_levels) {
         large_.push_back(m);
         return;
     }
@@ -118,7 +118,7 @@ void UniformGrid::fill_cells() {
     std::uint32_t sum = 0;
     for (ScanRange& cell : cells_) {
         cell.first = sum;
-        cell.end_of_askers += sum;
+        cell.queries_end += sum;
         sum += std::exchange(cell.end, sum);
     }
     filled_.resize(entering_.size());
@@ -129,7 +129,7 @@ void UniformGrid::fill_cells() {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         Aabb home;
         for (std::uint32_t at = cells_[i].first; at < cells_[i].end; ++at) {
-            const Move& m = store_.ordinary()[filled_[at].place];
+            const Move& m = store_.regular()[filled_[at].place];
             entries_.put(at, m.proxy, m.box);
             marks_[at] = filled_[at].marks;
             if (marks_[at] == all_marks) home = merge(home, m.box);

@@ -2,10 +2,10 @@
 /// Boxes in every cell that they overlap, of an endless grid of which only the cells in use are stored.
 #include <utility>
 
-#include "fase/broad/box_scan.hpp"
-#include "fase/broad/box_store.hpp"
-#include "fase/broad/cell_table.hpp"
-#include "fase/broad/grid_walk.hpp"
+#include "fase/broad/boxes/box_scan.hpp"
+#include "fase/broad/boxes/box_store.hpp"
+#include "fase/broad/uniform_grid/cell_table.hpp"
+#include "fase/broad/uniform_grid/walk.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -55,7 +55,7 @@ public:
 
     template <class Visit> void for_each_leaf(Visit&& visit) const {
         std::vector<Proxy> scratch;
-        store_.odd_leaf(scratch, visit);
+        store_.unbounded_leaf(scratch, visit);
         if (!large_.empty()) {
             scratch.clear();
             for (const Move& m : large_) scratch.push_back(m.proxy);
@@ -80,7 +80,7 @@ public:
     [[nodiscard]] double cell_side() const { return levels_[0].frame.side; }
 
 private:
-    static constexpr std::size_t most_levels = 8;
+    static constexpr std::size_t max_levels = 8;
     static constexpr double ratio = 4;            // of the cells of two levels
     static constexpr double typical_sides = 2.5;  // side of the finest cells in longest sides of most boxes
     static constexpr std::uint32_t all_marks = 7;
@@ -102,14 +102,14 @@ private:
 
     Settings settings_;
     BoxStore store_;
-    std::array<Level, most_levels> levels_;
+    std::array<Level, max_levels> levels_;
     std::size_t level_count_ = 1;
     CellTable table_;
     std::vector<ScanRange> cells_;        // by number: in entries_; the askers are those that are awake
     std::vector<Aabb> homes_;             // by number: around the boxes whose lower corner is there
     BoxColumns entries_;                  // cell by cell; in a cell those that are awake first
     std::vector<std::uint32_t> marks_;    // of the same place
-    std::vector<std::uint8_t> level_of_;  // by place in store_.ordinary(); most_levels: in large_
+    std::vector<std::uint8_t> level_of_;  // by place in store_.ordinary(); max_levels: in large_
     std::vector<Move> large_;
     std::vector<Entry> entering_;  // scratch of commit(), in the order of the boxes
     std::vector<Filled> filled_;   // scratch of commit(), in the order of entries_
@@ -175,7 +175,7 @@ void UniformGrid::search_all_cells(std::uint32_t levels, const R& region, Visit&
 }
 
 template <Region R, class Visit> void UniformGrid::traverse(const R& region, Visit&& visit) const {
-    if (!store_.traverse_odd(region, visit)) return;
+    if (!store_.traverse_unbounded(region, visit)) return;
     for (const Move& m : large_)
         if (region.touches(m.box) && !visit(m.proxy, m.box)) return;
     const Aabb bounds = region.bounds();
@@ -204,7 +204,7 @@ public:
     Nearest(const UniformGrid& grid, const M& measure, float limit) : grid_(grid), measure_(measure), limit_(limit) {}
 
     template <class Visit> void run(Visit& visit) {
-        for (const Move& m : grid_.store_.odd())
+        for (const Move& m : grid_.store_.unbounded())
             if (!look_at(m.proxy, m.box, visit)) return;
         for (const Move& m : grid_.large_)
             if (!look_at(m.proxy, m.box, visit)) return;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fase/broad/box_store.hpp"
-#include "fase/core/check.hpp"
+#include "fase/broad/boxes/box_store.hpp"
+#include "fase/core/detail/check.hpp"
 
 namespace fase::broad {
 
@@ -23,7 +23,7 @@ void WideBvh::insert(Proxy p, const Aabb& box) {
 void WideBvh::move(Proxy p, const Aabb& box) {
     FASE_ASSERT(p < spots_.size() && spots_[p].where != Where::Nowhere);
     const Spot spot = spots_[p];
-    if (spot.where == Where::Tree && is_ordinary(box)) {
+    if (spot.where == Where::Tree && is_regular(box)) {
         wide::Node& node = forest_.nodes[spot.at / width];
         if (node.box(spot.at % width) == box) return;
         node.set_box(spot.at % width, box);
@@ -31,7 +31,7 @@ void WideBvh::move(Proxy p, const Aabb& box) {
     } else if (spot.where == Where::Tree) {
         take_from_tree(p);
         put_in_list(p, box);
-    } else if (is_ordinary(box) == (spot.where == Where::Fresh)) {
+    } else if (is_regular(box) == (spot.where == Where::Fresh)) {
         lists_[static_cast<int>(spot.where)][spot.at].box = box;
     } else {
         take_from_list(p);
@@ -61,7 +61,7 @@ void WideBvh::clear() {
     dirty_.clear();
     is_dirty_.clear();
     in_trees_ = in_smaller_ = resting_ = moved_ = 0;
-    cost_ = least_cost_ = 0;
+    cost_ = min_cost_ = 0;
 }
 
 void WideBvh::build(std::span<const Move> boxes) {
@@ -74,7 +74,7 @@ void WideBvh::commit() {
     constexpr std::size_t smallest_limit = 256;
     const std::size_t fresh = lists_[0].size(), holes = forest_.holes.size();
     const std::size_t in_main = in_trees_ - in_smaller_;
-    const auto limit = static_cast<std::size_t>(settings_.newcomers * static_cast<float>(in_main));
+    const auto limit = static_cast<std::size_t>(settings_.staged * static_cast<float>(in_main));
     const bool many_fresh =
         fresh > fresh_kept && in_smaller_ + fresh > std::min(in_main, std::max(smallest_limit, limit));
     if (many_fresh || holes > in_trees_ / 4 + smallest_limit) {
@@ -84,7 +84,7 @@ void WideBvh::commit() {
     refit_moved();
     if (fresh > fresh_kept) rebuild_smaller();
     // A few boxes cannot spoil a tree, however far they go.
-    if (moved_ > in_trees_ / 8 && cost_ > static_cast<double>(settings_.worst_growth) * least_cost_) {
+    if (moved_ > in_trees_ / 8 && cost_ > static_cast<double>(settings_.worst_growth) * min_cost_) {
         rebuild(settings_.spoilt);
         return;
     }
@@ -92,7 +92,7 @@ void WideBvh::commit() {
 }
 
 void WideBvh::put_in_list(Proxy p, const Aabb& box) {
-    const Where where = is_ordinary(box) ? Where::Fresh : Where::Odd;
+    const Where where = is_regular(box) ? Where::Fresh : Where::Odd;
     std::vector<Move>& list = lists_[static_cast<int>(where)];
     spots_[p].where = where;
     spots_[p].at = static_cast<std::uint32_t>(list.size());
@@ -146,7 +146,7 @@ void WideBvh::refit_moved() {
     }
     for (const std::uint32_t node : dirty_) is_dirty_[node] = 0;
     dirty_.clear();
-    least_cost_ = std::min(least_cost_, cost_);
+    min_cost_ = std::min(min_cost_, cost_);
 }
 
 /// Until nothing changes any more.
@@ -214,7 +214,7 @@ void WideBvh::rebuild(Build how) {
     in_trees_ = items_.size();
     in_smaller_ = moved_ = 0;
     if (!items_.empty()) append_tree(how);
-    cost_ = least_cost_ = wide::refit(forest_, 0);
+    cost_ = min_cost_ = wide::refit(forest_, 0);
     ++times_built_;
 }
 
@@ -237,7 +237,7 @@ void WideBvh::rebuild_smaller() {
     append_tree(settings_.spoilt);
     const double change = wide::refit(forest_, begin) - before;
     cost_ = std::max(0.0, cost_ + change);
-    least_cost_ = std::max(0.0, least_cost_ + change);
+    min_cost_ = std::max(0.0, min_cost_ + change);
 }
 
 /// So that a tree with a few nodes more does not allocate.

@@ -4,10 +4,10 @@
 #include <span>
 #include <utility>
 
-#include "fase/broad/local_stack.hpp"
+#include "fase/broad/boxes/local_stack.hpp"
 #include "fase/broad/structure.hpp"
-#include "fase/broad/wide/build.hpp"
-#include "fase/broad/wide/kernels.hpp"
+#include "fase/broad/wide_bvh/build.hpp"
+#include "fase/broad/wide_bvh/kernels.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -38,7 +38,7 @@ public:
         Build filled = Build::Area;    ///< by build(), and when much was inserted or erased
         Build spoilt = Build::Morton;  ///< when motion has spoilt the tree, and for the smaller tree
         float worst_growth = 1.5f;     ///< the tree is built anew when its surface has grown by this factor
-        float newcomers = 1.0f / 32;   ///< share of boxes that the smaller tree may hold before all is built anew
+        float staged = 1.0f / 32;      ///< share of boxes that the smaller tree may hold before all is built anew
     };
 
     WideBvh() = default;
@@ -105,7 +105,7 @@ private:
     std::size_t resting_ = 0;
     std::vector<std::uint32_t> dirty_;    // nodes with children that moved
     std::vector<std::uint8_t> is_dirty_;  // by node
-    double cost_ = 0, least_cost_ = 0;    // now; since all was built
+    double cost_ = 0, min_cost_ = 0;      // now; since all was built
     std::size_t moved_ = 0;               // changes since all was built
     std::size_t times_built_ = 0;
     std::vector<BuildItem> items_;

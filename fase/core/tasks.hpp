@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "fase/core/float_mode.hpp"
+#include "fase/core/detail/float_mode.hpp"
 
 namespace fase {
 

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <string>
 
-#include "fase/geometry/grid_hull.hpp"
-#include "fase/geometry/hull_faces.hpp"
+#include "fase/geometry/detail/grid_hull.hpp"
+#include "fase/geometry/detail/hull_faces.hpp"
 
 namespace fase {
 namespace {
@@ -134,14 +134,14 @@ Faces merged_faces(std::span<const GridPoint> points, double tolerance) {
 /// The first pass leaves out only what is within an eighth of the tolerance: beyond a sharp edge, that little above
 /// both of its faces may be much more above later ones. Merging within the tolerance may go wrong on bodies that are
 /// nearly as thin as it; then faces are merged more strictly. Merging what is exactly coplanar cannot go wrong. Hulls
-/// of more than `most_merged` vertices get only that.
-Faces find_faces(const Grid& grid, double least, std::uint32_t most_vertices) {
-    constexpr std::size_t most_merged = 4096;
+/// of more than `max_merged` vertices get only that.
+Faces find_faces(const Grid& grid, double least, std::uint32_t max_vertices) {
+    constexpr std::size_t max_merged = 4096;
     const double tolerance = grid.tolerance * grid.steps_per_metre;
-    const GridHull solid = quickhull(grid.points, {least * grid.steps_per_metre, most_vertices});
+    const GridHull solid = quickhull(grid.points, {least * grid.steps_per_metre, max_vertices});
     if (solid.dimension < 3) return {solid.dimension, {}};
     const Selection vertices = select(grid.points, corners_of(solid.triangles));
-    double merging = vertices.index.size() <= most_merged ? tolerance : 0;
+    double merging = vertices.index.size() <= max_merged ? tolerance : 0;
     for (;;) {
         Faces faces = merged_faces(vertices.points, merging);
         const bool good =
@@ -216,8 +216,8 @@ ConvexHull assemble(const Grid& grid, std::span<const Vec3> points, const Faces&
 }  // namespace
 
 Result<ConvexHull> build_convex_hull(std::span<const Vec3> points, const HullOptions& options) {
-    if (options.most_vertices < 4) {
-        return refused(fmt::format("found most_vertices {}, need 4 or more", options.most_vertices), "");
+    if (options.max_vertices < 4) {
+        return refused(fmt::format("found most_vertices {}, need 4 or more", options.max_vertices), "");
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto [x, y, z] = points[i];
@@ -230,7 +230,7 @@ Result<ConvexHull> build_convex_hull(std::span<const Vec3> points, const HullOpt
     if (points.size() < 4) return not_solid(points, 0, thinnest);
     const Grid grid = to_grid(points);
     const double least = std::max(thinnest, 8 * grid.tolerance);
-    const Faces faces = find_faces(grid, least, static_cast<std::uint32_t>(options.most_vertices));
+    const Faces faces = find_faces(grid, least, static_cast<std::uint32_t>(options.max_vertices));
     if (faces.dimension < 3) return not_solid(points, faces.dimension, least);
     return assemble(grid, points, faces);
 }

@@ -40,10 +40,10 @@ Parts take_apart(const Mat3d& map) {
 }
 
 /// The hull of the mapped points of the surface.
-Result<TurnedShape> hull_of(const Shape& shape, const Mat3d& map, int most_vertices) {
+Result<TurnedShape> hull_of(const Shape& shape, const Mat3d& map, int max_vertices) {
     std::vector<Vec3> points = sample_points(shape, detail_of_hulls);
     for (Vec3& p : points) p = to_float(map * to_double(p));
-    Result<ConvexHull> hull = build_convex_hull(points, {most_vertices});
+    Result<ConvexHull> hull = build_convex_hull(points, {max_vertices});
     if (!hull) return hull.error();
     return TurnedShape{std::move(*hull), {}};
 }

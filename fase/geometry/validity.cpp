@@ -8,7 +8,7 @@
 namespace fase {
 namespace {
 
-constexpr float least_size = 1e-4f;
+constexpr float min_size = 1e-4f;
 constexpr float greatest_size = 1e5f;
 
 Error wrong(std::string where, float found, const std::string& need) {
@@ -16,7 +16,7 @@ Error wrong(std::string where, float found, const std::string& need) {
 }
 
 Result<void> check_size(const char* where, float size) {
-    if (size >= least_size && size <= greatest_size) return {};
+    if (size >= min_size && size <= greatest_size) return {};
     return wrong(where, size, "a length from 1e-4 to 1e5 m");
 }
 

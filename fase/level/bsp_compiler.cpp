@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "fase/level/cut_state.hpp"
-#include "fase/level/partition_choice.hpp"
+#include "fase/level/compiler/cut_state.hpp"
+#include "fase/level/compiler/partition_choice.hpp"
 
 namespace fase::level {
 namespace {
@@ -54,7 +54,7 @@ public:
                 tree_.nodes.push_back({plane, {0, 0}});
                 divide(plane, index, cell.depth);
             }
-            if (pieces_.size() + tree_.pieces.size() > options_.most_pieces) return false;
+            if (pieces_.size() + tree_.pieces.size() > options_.max_pieces) return false;
         }
         return true;
     }
@@ -186,7 +186,7 @@ Result<LevelBsp> compile(const Map& map, const CompileOptions& options) {
     if (!cutter.cut()) {
         return Error{Status::Capacity,
                      "lines",
-                     fmt::format("found more than {} pieces of lines that cross, need fewer", options.most_pieces),
+                     fmt::format("found more than {} pieces of lines that cross, need fewer", options.max_pieces),
                      {}};
     }
     return lay_out(map, cutter.take());

@@ -90,7 +90,7 @@ private:
     }
 
     void check_sub_sector(const SubSector& s) {
-        const std::span<const Seg> segs(bsp_.segs.data() + s.first, std::size_t{s.edges} + s.strays);
+        const std::span<const Seg> segs(bsp_.segs.data() + s.first, std::size_t{s.edges} + s.outliers);
         bool mixed = false, open = false;
         for (const Seg& seg : segs) {
             const auto [a, b] = way_of(seg);
@@ -133,7 +133,7 @@ private:
         std::vector<Stretch> stretches;
         std::vector<std::uint8_t> covered(2 * map_.lines.size());
         for (const SubSector& s : bsp_.sub_sectors) {
-            for (std::uint32_t i = s.first; i < s.first + s.edges + s.strays; ++i) {
+            for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
                 const Seg& seg = bsp_.segs[i];
                 if (seg.line == no_line) continue;
                 const auto [a, b] = way_of(seg);
@@ -201,7 +201,7 @@ private:
     }
     void check_leaf(const SubSector& s, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& above,
                     std::vector<Point> outline, std::vector<Point>& scratch) {
-        for (std::uint32_t i = s.first; i < s.first + s.edges + s.strays; ++i) {
+        for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
             const Seg& seg = bsp_.segs[i];
             for (const Point p : {at(seg.from), at(seg.to)}) {
                 for (const auto& [n, side] : above) {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "fase/level/doorways.hpp"
 #include "fase/level/level_order.hpp"
+#include "fase/level/visibility/doorways.hpp"
 
 namespace fase::level {
 namespace {
@@ -41,7 +41,7 @@ public:
     bool spread(std::uint32_t from, std::span<Word> seen) {
         const Doorway& first = doors_.all[from];
         ++run_;
-        const std::size_t most = steps_ + options_.most_steps;
+        const std::size_t most = steps_ + options_.max_steps;
         states_[from] = {{}, run_, true};
         set(seen, first.into);
         // Nearly the order in which lines meet sub-sectors, so that few are looked through again.
@@ -174,10 +174,10 @@ BitRows mutual(const BitRows& seen, std::size_t count) {
 Result<VisibleResult> find_visible(const LevelBsp& bsp, const Map& map, const VisibleOptions& options) {
     const std::size_t count = bsp.sub_sectors.size();
     const std::size_t needed = 2 * count * ((count + 63) / 64) * sizeof(Word);
-    if (needed > options.most_bytes) {
+    if (needed > options.max_bytes) {
         return Error{Status::Capacity,
                      "VisibleOptions.most_bytes",
-                     fmt::format("found {} bytes, need {} for {} sub-sectors", options.most_bytes, needed, count),
+                     fmt::format("found {} bytes, need {} for {} sub-sectors", options.max_bytes, needed, count),
                      {}};
     }
     const Doorways doors = Doorways::of(bsp, map, options.heights);

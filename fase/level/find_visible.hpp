@@ -6,7 +6,7 @@
 #include "fase/core/result.hpp"
 #include "fase/core/tasks.hpp"
 #include "fase/level/level_ray.hpp"
-#include "fase/level/visible_sets.hpp"
+#include "fase/level/visibility/visible_sets.hpp"
 
 namespace fase::level {
 
@@ -17,9 +17,9 @@ struct VisibleOptions {
     Heights heights = Heights::Ignored;
     /// From each opening at most so many others are looked through; where there are more it gets the coarse answer: all
     /// that is reached through openings which lie before it and have it behind them. 0: the coarse answer for all.
-    std::size_t most_steps = 1'000'000;
-    std::size_t most_bytes = std::size_t{1} << 30;  ///< of memory while it works; Capacity error beyond
-    TaskRunner* tasks = nullptr;                    ///< nullptr: all on the caller. The sets are the same.
+    std::size_t max_steps = 1'000'000;
+    std::size_t max_bytes = std::size_t{1} << 30;  ///< of memory while it works; Capacity error beyond
+    TaskRunner* tasks = nullptr;                   ///< nullptr: all on the caller. The sets are the same.
 };
 
 /// What it came to.

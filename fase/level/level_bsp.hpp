@@ -58,8 +58,8 @@ struct SubSector {
     std::uint32_t first = 0;  ///< of its segs
     std::uint32_t edges = 0;  ///< so many from `first` on are a closed loop, clockwise (y to the north), `to` of one is
                               ///< `from` of the next; 0 or at least 3, 0 only where all its walls have no inside
-    std::uint32_t strays = 0;  ///< so many behind them are walls that the loop has no place for: they lie over others
-    std::uint32_t sector = 0;  ///< of the map
+    std::uint32_t outliers = 0;  ///< so many behind them are walls that the loop has no place for: they lie over others
+    std::uint32_t sector = 0;    ///< of the map
 };
 
 /// A partition line and what lies on either side of it.
@@ -100,8 +100,8 @@ struct LevelBsp {
         return nodes.empty() ? Node::leaf_bit : static_cast<std::uint32_t>(nodes.size() - 1);
     }
     [[nodiscard]] std::span<const Seg> edges(const SubSector& s) const { return {segs.data() + s.first, s.edges}; }
-    [[nodiscard]] std::span<const Seg> strays(const SubSector& s) const {
-        return {segs.data() + s.first + s.edges, s.strays};
+    [[nodiscard]] std::span<const Seg> outliers(const SubSector& s) const {
+        return {segs.data() + s.first + s.edges, s.outliers};
     }
 };
 

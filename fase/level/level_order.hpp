@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fase/broad/local_stack.hpp"
+#include "fase/broad/boxes/local_stack.hpp"
 #include "fase/level/level_place.hpp"
 
 namespace fase::level {

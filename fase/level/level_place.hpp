@@ -47,7 +47,7 @@ namespace fase::level {
 /// The middle of a sub-sector's corners, which lies inside; of its walls' ends when it has no inside.
 [[nodiscard]] inline Point middle_of(const LevelBsp& bsp, const SubSector& sub_sector) {
     Point sum;
-    const std::uint32_t count = sub_sector.edges > 0 ? sub_sector.edges : sub_sector.strays;
+    const std::uint32_t count = sub_sector.edges > 0 ? sub_sector.edges : sub_sector.outliers;
     for (std::uint32_t i = sub_sector.first; i < sub_sector.first + count; ++i) {
         sum.x += bsp.vertices[bsp.segs[i].from].x / count;
         sum.y += bsp.vertices[bsp.segs[i].from].y / count;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fase/broad/local_stack.hpp"
+#include "fase/broad/boxes/local_stack.hpp"
 #include "fase/level/level_place.hpp"
 
 namespace fase::level {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "fase/level/little_endian.hpp"
+#include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
 namespace {

@@ -10,7 +10,7 @@
 namespace fase::level {
 namespace {
 
-constexpr double edge = 24, head = 40, foot = 46, page_width = 1200, most_height = 1600;
+constexpr double edge = 24, head = 40, foot = 46, page_width = 1200, max_height = 1600;
 constexpr Colour ink{34, 38, 46, 255}, grey{110, 118, 130, 255}, wall{28, 32, 40, 255}, step{120, 128, 140, 255},
     border{188, 193, 200, 255}, lit{255, 214, 64, 110}, bright{255, 190, 0, 90}, here{226, 32, 60, 255};
 
@@ -63,7 +63,7 @@ public:
         for (const Line& line : map.lines)
             for (const std::uint16_t v : {line.from, line.to}) plan_.add(bsp.vertices[v]);
         const double across = std::max(plan_.hi.x - plan_.lo.x, 1.0), up = std::max(plan_.hi.y - plan_.lo.y, 1.0);
-        scale_ = std::min((page_width - 2 * edge) / across, (most_height - head - foot - 2 * edge) / up);
+        scale_ = std::min((page_width - 2 * edge) / across, (max_height - head - foot - 2 * edge) / up);
         drawing_.width = page_width;
         drawing_.height = std::max(up * scale_, 120.0) + head + foot + 2 * edge;
         shift_x_ = (page_width - across * scale_) / 2;

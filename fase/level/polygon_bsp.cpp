@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fase/broad/local_stack.hpp"
+#include "fase/broad/boxes/local_stack.hpp"
 
 namespace fase::level {
 namespace {

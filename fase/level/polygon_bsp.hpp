@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "fase/broad/build/plane_choice.hpp"
-#include "fase/core/function_ref.hpp"
+#include "fase/broad/builders/plane_choice.hpp"
+#include "fase/core/detail/function_ref.hpp"
 #include "fase/core/result.hpp"
 #include "fase/core/tasks.hpp"
-#include "fase/level/triangles.hpp"
+#include "fase/level/visibility/triangles.hpp"
 
 namespace fase::level {
 
@@ -24,8 +24,8 @@ struct PolygonBspOptions {
     /// Metres on either side of a plane that count as on it, so that walls of many triangles become one plane. 0: a
     /// 2^20th part of the largest coordinate.
     double thickness = 0;
-    std::size_t most_pieces = 0;     ///< of all polygons together; 0: 16 a triangle and 4096
-    std::uint32_t most_depth = 128;  ///< nodes above a leaf, 1 to 4096
+    std::size_t max_pieces = 0;     ///< of all polygons together; 0: 16 a triangle and 4096
+    std::uint32_t max_depth = 128;  ///< nodes above a leaf, 1 to 4096
     /// Gives out the work of marking leaves; nullptr: all on the caller. The tree is the same.
     TaskRunner* tasks = nullptr;
 };

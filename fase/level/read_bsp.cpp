@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fase/level/bsp_lumps.hpp"
-#include "fase/level/little_endian.hpp"
+#include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
 namespace {
@@ -112,7 +112,7 @@ private:
     }
     void read_sub_sector(Cursor& in, std::size_t size, bool gl) {
         SubSector& s = out_.sub_sectors.emplace_back();
-        (gl ? s.edges : s.strays) = in.number(size);
+        (gl ? s.edges : s.outliers) = in.number(size);
         s.first = in.number(size);
     }
 
@@ -197,7 +197,7 @@ private:
         for (std::uint32_t s = 0; s < subs; ++s) {
             SubSector& placed = out_.sub_sectors.emplace_back();
             const std::uint32_t size = in.number(4);
-            (gl ? placed.edges : placed.strays) = size;
+            (gl ? placed.edges : placed.outliers) = size;
             placed.first = first;
             first += size;
         }
@@ -248,7 +248,7 @@ private:
         std::vector<std::uint8_t> taken(out_.segs.size());
         for (std::size_t s = 0; s < out_.sub_sectors.size(); ++s) {
             SubSector& placed = out_.sub_sectors[s];
-            const std::uint64_t size = std::uint64_t{placed.edges} + placed.strays;
+            const std::uint64_t size = std::uint64_t{placed.edges} + placed.outliers;
             if (placed.first + size > out_.segs.size()) {
                 return fail(fmt::format("sub-sectors[{}]", s),
                             fmt::format("found segs {} to {}, need them among the {}", placed.first,

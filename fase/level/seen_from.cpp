@@ -11,7 +11,7 @@
 namespace fase::level {
 namespace {
 
-constexpr std::size_t most_steps = 1'000'000;
+constexpr std::size_t max_steps = 1'000'000;
 /// Angles less wide than this (their sine) are not followed.
 constexpr double narrowest = 0x1p-40;
 
@@ -47,7 +47,7 @@ public:
         add_part(at);
         go_on({at, {}, {}}, true);
         for (std::size_t steps = 1; !looks_.empty(); ++steps) {
-            if (steps == most_steps) {
+            if (steps == max_steps) {
                 seen_.complete = false;
                 break;
             }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "fase/core/files.hpp"
-#include "fase/level/little_endian.hpp"
+#include "fase/core/detail/files.hpp"
+#include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
 namespace {
@@ -75,7 +75,7 @@ Result<Wad> Wad::parse(const std::string& name, std::span<const std::byte> bytes
 }
 
 Result<Wad> Wad::read(const std::string& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, most_bytes);
+    const Result<std::vector<std::byte>> bytes = read_file(path, max_bytes);
     if (!bytes) return bytes.error();
     return parse(path, *bytes);
 }

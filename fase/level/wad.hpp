@@ -28,7 +28,7 @@ public:
         Patch,  ///< "PWAD": added to one
     };
     /// WADs larger than this are refused.
-    static constexpr std::size_t most_bytes = std::size_t{1} << 30;
+    static constexpr std::size_t max_bytes = std::size_t{1} << 30;
 
     Kind kind = Kind::Patch;
     std::vector<Lump> lumps;

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "fase/level/bsp_lumps.hpp"
-#include "fase/level/little_endian.hpp"
+#include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
 namespace {
@@ -131,7 +131,7 @@ private:
     /// The walls of a sub-sector; one of its own sector first, for that is what games ask.
     void add_walls(const SubSector& s) {
         const std::size_t first = walls_.size();
-        for (std::uint32_t i = s.first; i < s.first + s.edges + s.strays; ++i) {
+        for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
             const Seg& seg = bsp_.segs[i];
             if (seg.line == no_line) continue;
             const bool continues = walls_.size() > first && walls_.back().line == seg.line &&

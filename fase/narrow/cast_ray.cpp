@@ -1,8 +1,8 @@
 /// Takes a ray to the frame of a shape, and the hit back.
 #include "fase/narrow/cast_ray.hpp"
 
-#include "fase/narrow/advance.hpp"
-#include "fase/narrow/ray_hits.hpp"
+#include "fase/narrow/detail/advance.hpp"
+#include "fase/narrow/detail/ray_hits.hpp"
 
 namespace fase::narrow {
 namespace {

@@ -1,7 +1,7 @@
 /// Takes a move to the frame of its target, and the touch back.
 #include "fase/narrow/cast_shape.hpp"
 
-#include "fase/narrow/advance.hpp"
+#include "fase/narrow/detail/advance.hpp"
 
 namespace fase::narrow {
 

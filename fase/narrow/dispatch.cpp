@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "fase/narrow/general.hpp"
+#include "fase/narrow/detail/general.hpp"
 #include "fase/narrow/pairs/collide_box_box.hpp"
 #include "fase/narrow/pairs/collide_box_capsule.hpp"
 #include "fase/narrow/pairs/collide_box_convex_hull.hpp"
@@ -38,7 +38,7 @@ template <class A, class B> Manifold collide_best(const A& a, const B& b, const 
     if constexpr (HasSpecial<A, B>) {
         return collide(a, b, b_in_a, margin);
     } else if constexpr (HasSpecial<B, A>) {
-        return turned_round(collide(b, a, inverse(b_in_a), margin), b_in_a);
+        return flipped(collide(b, a, inverse(b_in_a), margin), b_in_a);
     } else {
         return collide_general(a, b, b_in_a, margin);
     }

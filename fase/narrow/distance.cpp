@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "fase/narrow/penetration.hpp"
+#include "fase/narrow/detail/penetration.hpp"
 
 namespace fase::narrow {
 namespace {
@@ -69,7 +69,7 @@ Distance of_two_grounds(const TransformD& b_in_a) {
     return result;
 }
 
-Distance turned_round(const Distance& d, const TransformD& b_in_a) {
+Distance flipped(const Distance& d, const TransformD& b_in_a) {
     return {d.distance, transform(b_in_a, d.on_b), transform(b_in_a, d.on_a), -(b_in_a.rotation * d.normal)};
 }
 
@@ -83,7 +83,7 @@ Distance signed_distance(const Shape& a, const Shape& b, const TransformD& b_in_
             } else if constexpr (ConvexShape<B>) {
                 return of_ground(core_view(t), b_in_a);
             } else if constexpr (ConvexShape<A>) {
-                return turned_round(of_ground(core_view(s), inverse(b_in_a)), b_in_a);
+                return flipped(of_ground(core_view(s), inverse(b_in_a)), b_in_a);
             } else {
                 return of_two_grounds(b_in_a);
             }

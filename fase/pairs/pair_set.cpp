@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fase/core/check.hpp"
+#include "fase/core/detail/check.hpp"
 
 namespace fase::pairs {
 

@@ -3,19 +3,19 @@
 
 #include <algorithm>
 
-#include "fase/core/check.hpp"
-#include "fase/core/collect.hpp"
-#include "fase/pairs/tracker_passes.hpp"
+#include "fase/core/detail/check.hpp"
+#include "fase/core/detail/collect.hpp"
+#include "fase/pairs/detail/tracker_passes.hpp"
 
 namespace fase::pairs {
 
 using broad::Pair;
-using broad::Population;
+
 using broad::Proxy;
 
 PairChanges PairTracker::build(TaskRunner& tasks, std::span<const Aabb> boxes,
-                               std::span<const Population> populations) {
-    finder_.build(tasks, boxes, populations);
+                               std::span<const MotionState> motion_states) {
+    finder_.build(tasks, boxes, motion_states);
     places_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) passes::stay(boxes[i], places_[i]);
     ended_.clear();
@@ -35,7 +35,7 @@ PairChanges PairTracker::update(TaskRunner& tasks, std::span<const Aabb> boxes) 
     // Those that slept are awake now, and find their pairs; static ones do not look for what sleeps.
     const bool disturbs_rest = finder_.awake() < boxes.size() &&
                                std::any_of(changed.begin(), changed.end(),
-                                           [&](Proxy p) { return finder_.population(p) == Population::Static; });
+                                           [&](Proxy p) { return finder_.motion_state(p) == MotionState::Static; });
     found_.clear();
     disturbs_rest ? finder_.find_pairs(tasks, found_) : finder_.find_awake_pairs(tasks, found_);
     begun_.clear();

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "fase/broad/pair_finder.hpp"
+#include "fase/pairs/detail/tracker_passes.hpp"
+#include "fase/pairs/pair_finder.hpp"
 #include "fase/pairs/pair_set.hpp"
-#include "fase/pairs/tracker_passes.hpp"
 
 namespace fase::pairs {
 
@@ -23,16 +23,16 @@ public:
     /// @param kind an empty structure: what the boxes stand in
     explicit PairTracker(const broad::AnyStructure& kind = {}) : finder_(kind) {}
     /// @param finder an empty one, such as PairFinder::automatic()
-    explicit PairTracker(broad::PairFinder finder) : finder_(std::move(finder)) {}
+    explicit PairTracker(PairFinder finder) : finder_(std::move(finder)) {}
 
     /// Replaces all boxes; all pairs are begun. `populations` is as long as `boxes`.
-    PairChanges build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const broad::Population> populations);
+    PairChanges build(TaskRunner& tasks, std::span<const Aabb> boxes, std::span<const MotionState> motion_states);
     /// Takes the boxes of the next frame, as many as build() had. Lists are valid until the next call, in no order that
     /// counts. What was asleep and gets another box is awake from then on.
     PairChanges update(TaskRunner& tasks, std::span<const Aabb> boxes);
 
     /// Holds the boxes that span the last two frames.
-    [[nodiscard]] const broad::PairFinder& finder() const { return finder_; }
+    [[nodiscard]] const PairFinder& finder() const { return finder_; }
     [[nodiscard]] std::size_t bytes() const;
 
 private:
@@ -41,7 +41,7 @@ private:
         std::size_t staying = 0;
         std::vector<broad::Pair> begun, ended;
     };
-    broad::PairFinder finder_;                // of the boxes that span both places
+    PairFinder finder_;                       // of the boxes that span both places
     std::vector<passes::LastPlaces> places_;  // by box
     std::vector<broad::Proxy> changed_;       // room for those of one update
     std::vector<broad::Pair> found_;          // staying ones at the front when told

@@ -12,7 +12,7 @@ namespace fase::query {
 /// itself); a ray that starts inside a box enters it at 0. Cost: O(log n) boxes in a tree when they are spread.
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] std::optional<Hit> nearest_hit(const S& structure, const Ray& ray, E&& exact = {}, A&& accepts = {}) {
-    return least_hit(structure, broad::RayMeasure(ray), ray.length, exact, accepts);
+    return min_hit(structure, broad::RayMeasure(ray), ray.length, exact, accepts);
 }
 
 /// Whether the ray meets anything; ends with the first that is found. For shadows and lines of sight.

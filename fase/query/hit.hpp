@@ -4,7 +4,7 @@
 #include <concepts>
 #include <optional>
 
-#include "fase/broad/nearest_first.hpp"
+#include "fase/broad/search/nearest_first.hpp"
 
 namespace fase::query {
 
@@ -63,7 +63,7 @@ void search(const S& structure, const M& measure, float limit, E&& exact, A&& ac
 
 /// The least hit within `limit` metres; of those as far, the smallest proxy: every structure gives the same.
 template <broad::Searchable S, broad::Measure M, Exact E, Filter A>
-[[nodiscard]] std::optional<Hit> least_hit(const S& structure, const M& measure, float limit, E&& exact, A&& accepts) {
+[[nodiscard]] std::optional<Hit> min_hit(const S& structure, const M& measure, float limit, E&& exact, A&& accepts) {
     Hit least;
     search(structure, measure, limit, exact, accepts, [&](const Hit& hit) {
         if (hit < least) least = hit;

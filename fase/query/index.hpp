@@ -7,7 +7,7 @@
 
 #include "fase/broad/dynamic_bvh.hpp"
 #include "fase/broad/find_pairs.hpp"
-#include "fase/core/check.hpp"
+#include "fase/core/detail/check.hpp"
 #include "fase/query/cast_ray.hpp"
 #include "fase/query/cull.hpp"
 #include "fase/query/nearest.hpp"
@@ -124,7 +124,7 @@ public:
         each_with(other, [&](Id mine, Proxy theirs) { call(f, *this, mine.index, other, theirs); });
     }
 
-    /// What a box or a region (fase/query/round_regions.hpp) touches, in order.
+    /// What a box or a region (fase/query/detail/round_regions.hpp) touches, in order.
     template <class R, class F> void overlapping(const R& region, F&& f) { overlapping_in(*this, region, f); }
     template <class R, class F> void overlapping(const R& region, F&& f) const { overlapping_in(*this, region, f); }
     /// What a point is in, in order.

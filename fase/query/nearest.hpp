@@ -12,7 +12,7 @@ namespace fase::query {
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] std::optional<Hit> nearest(const S& structure, Vec3d point, float radius, E&& exact = {},
                                          A&& accepts = {}) {
-    return least_hit(structure, broad::PointMeasure(point, radius), radius, exact, accepts);
+    return min_hit(structure, broad::PointMeasure(point, radius), radius, exact, accepts);
 }
 
 /// Appends the `k` nearest within `radius` metres, or as many as there are, in order of (distance, proxy); the same

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "fase/broad/nearest_first.hpp"
-#include "fase/query/round_regions.hpp"
+#include "fase/broad/search/nearest_first.hpp"
+#include "fase/query/detail/round_regions.hpp"
 
 namespace fase::query {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fase/query/ray_mesh_kernels.hpp"
+#include "fase/query/detail/ray_mesh_kernels.hpp"
 
 namespace fase::query {
 namespace {

@@ -12,8 +12,8 @@
 namespace fase::record {
 namespace {
 
-constexpr double page_width = 900, edge = 20, legend_height = 64, least_height = 120, most_height = 1400;
-constexpr double least_side = 0.8;  // what is thinner could not be seen
+constexpr double page_width = 900, edge = 20, legend_height = 64, min_height = 120, max_height = 1400;
+constexpr double min_side = 0.8;  // what is thinner could not be seen
 
 /// In units of the page, y downward.
 struct Rectangle {
@@ -65,10 +65,10 @@ public:
             std::max({hi_u - lo_u, hi_v - lo_v, 1e-6 * std::abs(hi_u), 1e-6 * std::abs(hi_v), 1e-30});
         const double width = page_width - 2 * edge;
         scale_ = std::min(width / std::max(hi_u - lo_u, 1e-3 * largest),
-                          (most_height - 2 * edge) / std::max(hi_v - lo_v, 1e-3 * largest));
+                          (max_height - 2 * edge) / std::max(hi_v - lo_v, 1e-3 * largest));
         middle_u_ = (lo_u + hi_u) / 2;
         middle_v_ = (lo_v + hi_v) / 2;
-        height_ = std::clamp((hi_v - lo_v) * scale_ + 2 * edge, least_height, most_height);
+        height_ = std::clamp((hi_v - lo_v) * scale_ + 2 * edge, min_height, max_height);
     }
     [[nodiscard]] double height() const { return height_; }
     [[nodiscard]] Rectangle rectangle(const Aabb& box) const {
@@ -94,7 +94,7 @@ private:
         constexpr double inset = edge / 2;
         lo = std::clamp(lo, inset, size - inset);
         hi = std::clamp(hi, inset, size - inset);
-        const double missing = least_side - (hi - lo);
+        const double missing = min_side - (hi - lo);
         if (missing > 0) lo -= missing / 2, hi += missing / 2;
     }
 };

@@ -16,16 +16,16 @@ inline constexpr std::size_t tail_bytes = 16;
 inline constexpr std::size_t chunk_frame_bytes = 12;  ///< type, length and check around a chunk's body
 inline constexpr std::size_t packed_head_bytes = 8;   ///< method and raw length at the start of a body
 
-inline constexpr std::uint64_t most_raw_bytes = std::uint64_t(64) << 20;   ///< of one chunk, unpacked
+inline constexpr std::uint64_t max_raw_bytes = std::uint64_t(64) << 20;    ///< of one chunk, unpacked
 inline constexpr std::uint64_t free_raw_bytes = std::uint64_t(4) << 20;    ///< of any one chunk …
-inline constexpr std::uint64_t most_packing = 32;                          ///< … plus so many times its packed size
+inline constexpr std::uint64_t max_packing = 32;                           ///< … plus so many times its packed size
 inline constexpr std::uint64_t free_table_bytes = std::uint64_t(4) << 20;  ///< of all tables of any file …
-inline constexpr std::uint64_t most_table_packing = 16;                    ///< … plus so many times its size
-inline constexpr std::uint32_t most_rows = 1u << 21;                       ///< of any table
-inline constexpr std::uint32_t most_block_frames = 64;
+inline constexpr std::uint64_t max_table_packing = 16;                     ///< … plus so many times its size
+inline constexpr std::uint32_t max_rows = 1u << 21;                        ///< of any table
+inline constexpr std::uint32_t max_block_frames = 64;
 inline constexpr std::size_t full_block_bytes = std::size_t(8) << 20;  ///< a writer ends a block that is larger
 inline constexpr double default_quanta_per_metre = 2048;
-inline constexpr double most_position = 1e9;  ///< metres from the origin
+inline constexpr double max_position = 1e9;  ///< metres from the origin
 
 /// The type of a chunk: its four letters, the first in the lowest byte.
 enum class ChunkType : std::uint32_t {};

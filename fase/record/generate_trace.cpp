@@ -7,7 +7,7 @@
 #include <span>
 
 #include "fase/record/trace.hpp"
-#include "fase/record/trace_rules.hpp"
+#include "fase/record/trace/trace_rules.hpp"
 
 namespace fase::record {
 
@@ -18,7 +18,7 @@ std::vector<TraceKind> trace_kinds() {
 }
 
 Result<MadeTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file) {
-    constexpr std::size_t most_boxes = 10'000'000;
+    constexpr std::size_t max_boxes = 10'000'000;
     const auto rules = trace_rules();
     const auto rule = std::find_if(rules.begin(), rules.end(), [&](const TraceRule& r) { return r.kind.name == kind; });
     if (rule == rules.end()) {
@@ -29,9 +29,8 @@ Result<MadeTrace> generate_trace(std::string_view kind, const TraceSettings& set
     MadeTrace made;
     made.boxes = settings.count == 0 ? rule->kind.default_count : settings.count;
     made.frames = settings.frames == 0 ? rule->kind.default_frames : settings.frames;
-    if (made.boxes > most_boxes)
-        return Error{
-            Status::BadArgument, "count", fmt::format("found {}, need at most {}", made.boxes, most_boxes), {}};
+    if (made.boxes > max_boxes)
+        return Error{Status::BadArgument, "count", fmt::format("found {}, need at most {}", made.boxes, max_boxes), {}};
     Result<TraceWriter> writer = TraceWriter::create(file, made.boxes);
     if (!writer) return writer.error();
 

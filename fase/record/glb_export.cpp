@@ -10,9 +10,9 @@
 #include <tuple>
 
 #include "fase/geometry/mesh.hpp"
-#include "fase/record/creased_mesh.hpp"
-#include "fase/record/glb_builder.hpp"
-#include "fase/record/motion_keys.hpp"
+#include "fase/record/export/creased_mesh.hpp"
+#include "fase/record/export/glb_builder.hpp"
+#include "fase/record/export/motion_keys.hpp"
 
 namespace fase::record {
 namespace {

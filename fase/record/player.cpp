@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "fase/record/block_reader.hpp"
-#include "fase/record/bytes.hpp"
-#include "fase/record/chunk_packer.hpp"
-#include "fase/record/crc32.hpp"
 #include "fase/record/format.hpp"
-#include "fase/record/input_file.hpp"
+#include "fase/record/recording/block_reader.hpp"
+#include "fase/record/recording/bytes.hpp"
+#include "fase/record/recording/chunk_packer.hpp"
+#include "fase/record/recording/crc32.hpp"
+#include "fase/record/recording/input_file.hpp"
 
 namespace fase::record {
 namespace {
@@ -87,7 +87,7 @@ Result<ChunkBody> Player::State::read_chunk(std::uint64_t offset) {
     const std::uint64_t length = in.get<std::uint32_t>();
     if (length > left - chunk_frame_bytes)
         return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
-    if (length > packed_head_bytes + most_raw_bytes) {
+    if (length > packed_head_bytes + max_raw_bytes) {
         return Error{Status::Format, at(offset), "found a chunk that is longer than any may be", {}};
     }
     bytes.resize(static_cast<std::size_t>(length + chunk_frame_bytes));
@@ -106,7 +106,7 @@ Result<void> Player::State::take_block(const ChunkBody& chunk, std::uint64_t off
     ByteReader in(*raw);
     Block block{offset, in.get<std::uint64_t>(), in.get<std::uint32_t>()};
     const std::uint64_t expected = blocks.empty() ? 0 : blocks.back().first_frame + blocks.back().frames;
-    if (in.failed() || block.first_frame != expected || block.frames == 0 || block.frames > most_block_frames) {
+    if (in.failed() || block.first_frame != expected || block.frames == 0 || block.frames > max_block_frames) {
         return Error{Status::Format, {}, "found a block out of its order", {}};
     }
     blocks.push_back(block);
@@ -126,7 +126,7 @@ Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
     const Result<std::uint64_t> length = raw_length(chunk);
     if (!length) return length.error();
     table_bytes += *length;
-    if (table_bytes > free_table_bytes + most_table_packing * file.size()) {
+    if (table_bytes > free_table_bytes + max_table_packing * file.size()) {
         return Error{Status::Format, {}, "found tables that expand to more than those of a file of its size may", {}};
     }
     const Result<std::vector<std::byte>> raw = unpack(chunk);

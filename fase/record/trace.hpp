@@ -11,9 +11,9 @@
 
 #include "fase/core/result.hpp"
 #include "fase/geometry/aabb.hpp"
-#include "fase/record/bytes.hpp"
-#include "fase/record/input_file.hpp"
-#include "fase/record/output_file.hpp"
+#include "fase/record/recording/bytes.hpp"
+#include "fase/record/recording/input_file.hpp"
+#include "fase/record/recording/output_file.hpp"
 
 namespace fase::record {
 

@@ -4,7 +4,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/scene/gltf/assemble.hpp"
 
 namespace fase::scene {

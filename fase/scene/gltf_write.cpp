@@ -7,10 +7,10 @@
 #include <map>
 #include <new>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/geometry/mesh.hpp"
+#include "fase/scene/detail/uri.hpp"
 #include "fase/scene/gltf/node_writer.hpp"
-#include "fase/scene/uri.hpp"
 
 namespace fase::scene {
 namespace {

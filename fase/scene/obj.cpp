@@ -8,13 +8,13 @@
 #include <optional>
 #include <string_view>
 
-#include "fase/core/files.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/core/detail/files.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::scene {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::size_t max_bytes = std::size_t{1} << 30;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -71,7 +71,7 @@ struct Flat {
 double turn(Flat a, Flat b, Flat c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 /// Faces of more corners than this become fans: finding ears costs the square.
-constexpr std::size_t most_ears = 512;
+constexpr std::size_t max_ears = 512;
 
 /// Cuts a face into triangles, ear by ear; what has no ear left (it crosses itself) becomes a fan. The corners are used
 /// up. Source: Meisters 1975, Polygons have ears.
@@ -96,7 +96,7 @@ void add_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& face) {
         }
         return true;
     };
-    while (face.size() > 3 && face.size() <= most_ears) {
+    while (face.size() > 3 && face.size() <= max_ears) {
         std::size_t ear = 0;
         while (ear < face.size() && !is_ear(ear)) ++ear;
         if (ear == face.size()) break;
@@ -159,7 +159,7 @@ Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byt
 }
 
 Result<TriangleMesh> read_obj(const std::string& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, most_bytes);
+    const Result<std::vector<std::byte>> bytes = read_file(path, max_bytes);
     if (!bytes) return bytes.error();
     return parse_obj(path, *bytes);
 }

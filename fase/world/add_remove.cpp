@@ -2,12 +2,9 @@
 #include <algorithm>
 #include <new>
 
-#include "fase/world/edit.hpp"
+#include "fase/world/detail/edit.hpp"
 
 namespace fase {
-
-using dynamics::no_index;
-using dynamics::Population;
 
 namespace {
 
@@ -74,8 +71,8 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
                        (def.kind == BodyKind::Kinematic &&
                         (length_squared(def.linear_velocity) > 0 || length_squared(def.angular_velocity) > 0));
     if (def.kind != BodyKind::Static)
-        traits.population =
-            moves && (def.awake || def.kind == BodyKind::Kinematic) ? Population::Awake : Population::Asleep;
+        traits.motion_state =
+            moves && (def.awake || def.kind == BodyKind::Kinematic) ? MotionState::Awake : MotionState::Asleep;
     dynamics::BodyMotion motion;
     motion.position = def.position;
     motion.rotation = normalized(def.rotation);
@@ -84,8 +81,8 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
     state.bodies.motion[id.index] = motion;
     state.bodies.forces[id.index] = {};
     const std::span<const std::uint32_t> one(&id.index, 1);
-    if (traits.population == Population::Awake) insert_ascending(state.awake, one);
-    if (traits.population == Population::Asleep) state.asleep.add(one, state.bodies.motion);
+    if (traits.motion_state == MotionState::Awake) insert_ascending(state.awake, one);
+    if (traits.motion_state == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
     renew_mass(state, id.index);
     if (def.kind != BodyKind::Static) {  // the velocity given is that of the centre of mass
         state.bodies.motion[id.index].linear_velocity = def.linear_velocity;
@@ -104,7 +101,7 @@ void unlink_collider(WorldState& state, std::uint32_t index) {
 /// Takes a collider out of everything but its body's chain.
 void drop_collider(WorldState& state, std::uint32_t index) {
     const Collider& collider = state.colliders[index];
-    broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[collider.body].population);
+    broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[collider.body].motion_state);
     boxes.erase(std::span(&index, 1));
     release_shape(state, collider.shape);
     state.collider_ids.remove(*state.collider_ids.id_at(index));
@@ -137,7 +134,7 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, const Shape& sha
     renew_mass(state, body);
     state.boxes[id.index] = reaching_box(state, id.index, 0, 0);
     const broad::Move move{id.index, state.boxes[id.index]};
-    broad::AnyStructure& boxes = boxes_of(state, traits.population);
+    broad::AnyStructure& boxes = boxes_of(state, traits.motion_state);
     boxes.insert(std::span(&move, 1));
     note_edit(state, id.index);
     if (!(frame_before == traits.principal)) renew_boxes(state, body);

@@ -1,7 +1,7 @@
 /// What numbers a world takes.
 #include <cmath>
 
-#include "fase/world/edit.hpp"
+#include "fase/world/detail/edit.hpp"
 
 namespace fase {
 

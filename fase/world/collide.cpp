@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "fase/narrow/dispatch.hpp"
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 

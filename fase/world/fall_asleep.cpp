@@ -1,5 +1,5 @@
 /// Stage "sleep": islands in which all have rested long enough leave the step.
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 

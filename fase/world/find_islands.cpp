@@ -1,13 +1,12 @@
 /// Stage "islands": wakes what is touched, and joins bodies that touch.
 #include <algorithm>
 
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 
 using dynamics::BodyTraits;
 using dynamics::Contact;
-using dynamics::Population;
 
 namespace {
 
@@ -33,11 +32,11 @@ void find_islands(WorldState& state, float seconds) {
         const Contact& c = state.contacts[index];
         const BodyTraits& a = state.bodies.traits[c.body_a];
         const BodyTraits& b = state.bodies.traits[c.body_b];
-        if (a.population == b.population || !meets(state, c, seconds)) continue;
+        if (a.motion_state == b.motion_state || !meets(state, c, seconds)) continue;
         // Only a body that can push wakes: a kinematic one that moves, or a dynamic one.
-        if (a.kind != BodyKind::Static && b.kind == BodyKind::Dynamic && b.population == Population::Asleep)
+        if (a.kind != BodyKind::Static && b.kind == BodyKind::Dynamic && b.motion_state == MotionState::Asleep)
             want_awake(state, c.body_b);
-        if (b.kind != BodyKind::Static && a.kind == BodyKind::Dynamic && a.population == Population::Asleep)
+        if (b.kind != BodyKind::Static && a.kind == BodyKind::Dynamic && a.motion_state == MotionState::Asleep)
             want_awake(state, c.body_a);
     }
     if (!state.wake_wanted.empty()) {
@@ -56,7 +55,7 @@ void find_islands(WorldState& state, float seconds) {
         const bool both = a.kind == BodyKind::Dynamic && b.kind == BodyKind::Dynamic;
         const bool touches = c.touching || c.nearest <= state.settings.linear_slop;
         if (!touches) continue;
-        if (both && a.population == Population::Awake && b.population == Population::Awake) {
+        if (both && a.motion_state == MotionState::Awake && b.motion_state == MotionState::Awake) {
             state.sets.unite(c.body_a, c.body_b);
         } else if (a.kind == BodyKind::Kinematic && is_moving(state.bodies.motion[c.body_a])) {
             state.bodies.motion[c.body_b].sleep_time = 0;

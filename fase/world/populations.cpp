@@ -2,19 +2,17 @@
 #include <algorithm>
 
 #include "fase/geometry/bounds.hpp"
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 
 using broad::Pair;
-using dynamics::no_index;
-using dynamics::Population;
 
-broad::AnyStructure& boxes_of(WorldState& state, Population population) {
-    switch (population) {
-        case Population::Static: return state.static_boxes;
-        case Population::Asleep: return state.asleep_boxes;
-        case Population::Awake: break;
+broad::AnyStructure& boxes_of(WorldState& state, MotionState motion_state) {
+    switch (motion_state) {
+        case MotionState::Static: return state.static_boxes;
+        case MotionState::Asleep: return state.asleep_boxes;
+        case MotionState::Awake: break;
     }
     return state.awake_boxes;
 }
@@ -45,23 +43,23 @@ Aabb reaching_box(const WorldState& state, std::uint32_t index, float seconds, f
 namespace {
 
 /// Moves the boxes of a body's colliders from one set to another.
-void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, Population from, Population to) {
-    state.askers.clear();
+void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, MotionState from, MotionState to) {
+    state.query_boxes.clear();
     state.scratch.clear();
     for (const std::uint32_t body : bodies)
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
-            state.askers.push_back({c, state.boxes[c]});
+            state.query_boxes.push_back({c, state.boxes[c]});
             state.scratch.push_back(c);
             note_box(state, c);
         }
     boxes_of(state, from).erase(state.scratch);
-    boxes_of(state, to).insert(state.askers);
+    boxes_of(state, to).insert(state.query_boxes);
 }
 
 bool is_awake(const WorldState& state, std::uint32_t contact) {
     const dynamics::Contact& c = state.contacts[contact];
-    return state.bodies.traits[c.body_a].population == Population::Awake ||
-           state.bodies.traits[c.body_b].population == Population::Awake;
+    return state.bodies.traits[c.body_a].motion_state == MotionState::Awake ||
+           state.bodies.traits[c.body_b].motion_state == MotionState::Awake;
 }
 
 /// Takes the pairs for which `goes(place)` holds out of `from` and merges them into `into`; both stay sorted. Two bytes
@@ -118,31 +116,31 @@ void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies) {
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
     if (bodies.empty()) return;
     for (const std::uint32_t body : bodies) {
-        state.bodies.traits[body].population = Population::Awake;
+        state.bodies.traits[body].motion_state = MotionState::Awake;
         state.bodies.motion[body].sleep_time = 0;
     }
     state.asleep.remove(bodies);
     insert_ascending(state.awake, bodies);
-    move_boxes(state, bodies, Population::Asleep, Population::Awake);
+    move_boxes(state, bodies, MotionState::Asleep, MotionState::Awake);
     sort_out_pairs(state, bodies);
 }
 
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
     if (bodies.empty()) return;
     for (const std::uint32_t body : bodies) {
-        state.bodies.traits[body].population = Population::Asleep;
+        state.bodies.traits[body].motion_state = MotionState::Asleep;
         state.bodies.motion[body].linear_velocity = {};
         state.bodies.motion[body].angular_velocity = {};
     }
     erase_ascending(state.awake, bodies);
     state.asleep.add(bodies, state.bodies.motion);
-    move_boxes(state, bodies, Population::Awake, Population::Asleep);
+    move_boxes(state, bodies, MotionState::Awake, MotionState::Asleep);
     note_sleepers(state, bodies);
     sort_out_pairs(state, bodies);
 }
 
 void want_awake(WorldState& state, std::uint32_t body) {
-    if (state.bodies.traits[body].population == Population::Asleep && !state.bodies.traits[body].quarantined)
+    if (state.bodies.traits[body].motion_state == MotionState::Asleep && !state.bodies.traits[body].quarantined)
         state.wake_wanted.push_back(body);
 }
 

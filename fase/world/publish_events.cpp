@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 

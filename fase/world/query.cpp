@@ -5,7 +5,7 @@
 
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/cast_shape.hpp"
-#include "fase/world/query_checks.hpp"
+#include "fase/world/detail/query_checks.hpp"
 
 namespace fase {
 
@@ -13,7 +13,7 @@ using namespace world_queries;
 
 namespace {
 
-constexpr std::uint32_t nobody = dynamics::no_index;
+constexpr std::uint32_t nobody = no_index;
 
 /// The least of what was found so far, by way and then by index.
 struct Least {

@@ -3,7 +3,7 @@
 
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/world/query_checks.hpp"
+#include "fase/world/detail/query_checks.hpp"
 
 namespace fase {
 
@@ -17,7 +17,7 @@ bool holds(const WorldState& state, std::uint32_t collider, Vec3d point) {
 }
 
 /// The corner of the box least far along a direction; axes that the direction does not see count nothing.
-double least_along(Vec3d direction, const Aabb& box) {
+double min_along(Vec3d direction, const Aabb& box) {
     double sum = 0;
     for (int i = 0; i < 3; ++i)
         if (direction[i] != 0) sum += direction[i] * double(direction[i] > 0 ? box.lo[i] : box.hi[i]);
@@ -29,7 +29,7 @@ bool meets_box(const WorldState& state, std::uint32_t collider, const Aabb& box)
     const Pose pose = world_pose(state, state.colliders[collider]);
     if (std::holds_alternative<HalfSpace>(shape)) {
         const Vec3d up = rotate(normalized(to_double(pose.rotation)), Vec3d{0, 1, 0});
-        return least_along(up, box) <= dot(up, pose.position);
+        return min_along(up, box) <= dot(up, pose.position);
     }
     // Only the part around the shape matters: that is finite, and no larger than what floats can tell there.
     const Aabb around = bounds(shape, pose);
@@ -52,7 +52,7 @@ double farthest_along(const Shape& shape, const Pose& pose, Vec3d direction) {
                 const bool straight = local.x == 0 && local.z == 0 && local.y > 0;
                 return straight ? 0 : std::numeric_limits<double>::infinity();
             } else {
-                return -least_along(-direction, bounds(shape, pose)) - dot(direction, pose.position);
+                return -min_along(-direction, bounds(shape, pose)) - dot(direction, pose.position);
             }
         },
         shape);

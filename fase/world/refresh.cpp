@@ -1,11 +1,9 @@
 /// Stage "refresh": the boxes of awake bodies follow them.
 #include <algorithm>
 
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
-
-using dynamics::no_index;
 
 void refresh_boxes(WorldState& state, float seconds) {
     wake_wanted_islands(state);

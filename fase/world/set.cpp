@@ -1,12 +1,9 @@
 /// Changing bodies and pushing them.
 #include <algorithm>
 
-#include "fase/world/edit.hpp"
+#include "fase/world/detail/edit.hpp"
 
 namespace fase {
-
-using dynamics::no_index;
-using dynamics::Population;
 
 namespace {
 
@@ -29,31 +26,31 @@ Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::B
 
 }  // namespace
 
-void renew_population(WorldState& state, std::uint32_t body) {
+void update_motion_state(WorldState& state, std::uint32_t body) {
     dynamics::BodyTraits& traits = state.bodies.traits[body];
     const dynamics::BodyMotion& motion = state.bodies.motion[body];
     const bool moves = length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
-    const Population now = traits.kind == BodyKind::Static    ? Population::Static
-                           : traits.kind == BodyKind::Dynamic ? Population::Awake
-                           : moves                            ? Population::Awake
-                                                              : Population::Asleep;
-    if (now == traits.population) return;
+    const MotionState now = traits.kind == BodyKind::Static    ? MotionState::Static
+                            : traits.kind == BodyKind::Dynamic ? MotionState::Awake
+                            : moves                            ? MotionState::Awake
+                                                               : MotionState::Asleep;
+    if (now == traits.motion_state) return;
     std::vector<broad::Move> boxes;
     std::vector<std::uint32_t> proxies;
     for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
         boxes.push_back({c, state.boxes[c]});
         proxies.push_back(c);
     }
-    boxes_of(state, traits.population).erase(proxies);
+    boxes_of(state, traits.motion_state).erase(proxies);
     const std::span<const std::uint32_t> one(&body, 1);
     erase_ascending(state.awake, one);
     state.asleep.remove(one);
-    traits.population = now;
+    traits.motion_state = now;
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
     boxes_of(state, now).insert(boxes);
-    if (now == Population::Awake) insert_ascending(state.awake, one);
-    if (now == Population::Asleep) state.asleep.add(one, state.bodies.motion);
+    if (now == MotionState::Awake) insert_ascending(state.awake, one);
+    if (now == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
     sort_out_pairs(state, one);
     renew_boxes(state, body);
 }
@@ -147,7 +144,7 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
         state.bodies.motion[body.index].angular_velocity = {};
     }
     renew_mass(state, body.index);
-    renew_population(state, body.index);
+    update_motion_state(state, body.index);
     renew_boxes(state, body.index);
     return {};
 }

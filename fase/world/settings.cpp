@@ -17,7 +17,7 @@ Result<void> check(const Settings& s) {
     if (!(s.time_step > 0 && s.time_step <= 1))
         return refused("time_step", std::to_string(s.time_step), "above 0, at most 1");
     if (s.sub_steps < 1 || s.sub_steps > 64) return refused("sub_steps", std::to_string(s.sub_steps), "1 to 64");
-    if (s.most_pairs < 0) return refused("most_pairs", std::to_string(s.most_pairs), "0 or more");
+    if (s.max_pairs < 0) return refused("most_pairs", std::to_string(s.max_pairs), "0 or more");
     const struct {
         const char* field;
         float value, least, most;
@@ -35,8 +35,8 @@ Result<void> check(const Settings& s) {
         {"sleep_distance", s.sleep_distance, 0.0f, 1e3f},
         {"sleep_tolerance", s.sleep_tolerance, 0.0f, 1.0f},
         {"time_to_sleep", s.time_to_sleep, 0.0f, 1e6f},
-        {"most_linear_speed", s.most_linear_speed, 1e-3f, 1e6f},
-        {"most_angular_speed", s.most_angular_speed, 1e-3f, 1e5f},
+        {"most_linear_speed", s.max_linear_speed, 1e-3f, 1e6f},
+        {"most_angular_speed", s.max_angular_speed, 1e-3f, 1e5f},
     };
     for (const auto& range : ranges)
         if (!(range.value >= range.least && range.value <= range.most))

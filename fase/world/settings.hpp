@@ -40,9 +40,9 @@ struct Settings {
                                  ///< sleep when its island may
 
     // Caps: clamped and counted in the report, never exceeded.
-    float most_linear_speed = 1000;   ///< m/s
-    float most_angular_speed = 1000;  ///< rad/s
-    int most_pairs = 1 << 22;         ///< pairs kept; beyond, the last in order are dropped and counted. 0: no limit
+    float max_linear_speed = 1000;   ///< m/s
+    float max_angular_speed = 1000;  ///< rad/s
+    int max_pairs = 1 << 22;         ///< pairs kept; beyond, the last in order are dropped and counted. 0: no limit
 };
 
 /// An error that names the field unless every number is finite and in the range its comment gives.

@@ -4,7 +4,7 @@
 #include <new>
 
 #include "fase/core/hash.hpp"
-#include "fase/world/edit.hpp"
+#include "fase/world/detail/edit.hpp"
 
 namespace fase {
 namespace {
@@ -114,12 +114,12 @@ template <class A> void describe(A& a, Settings& s) {
     all(a, s.gravity, s.time_step, s.sub_steps, s.contact_frequency, s.contact_damping_ratio, s.push_out_speed,
         s.restitution_threshold, s.speculative_distance, s.linear_slop, s.contact_reuse_distance, s.box_margin, s.sleep,
         s.sleep_linear_speed, s.sleep_angular_speed, s.sleep_distance, s.sleep_tolerance, s.time_to_sleep,
-        s.most_linear_speed, s.most_angular_speed, s.most_pairs);
+        s.max_linear_speed, s.max_angular_speed, s.max_pairs);
 }
 template <class A> void describe(A& a, dynamics::BodyTraits& t) {
-    all(a, t.kind, t.population, t.locks, t.can_sleep, t.quarantined, t.mass_given, t.linear_damping, t.angular_damping,
-        t.gravity_scale, t.inverse_mass, t.inverse_moments, t.reach, t.inner_radius, t.principal, t.first_collider,
-        t.user, t.mass);
+    all(a, t.kind, t.motion_state, t.locks, t.can_sleep, t.quarantined, t.mass_given, t.linear_damping,
+        t.angular_damping, t.gravity_scale, t.inverse_mass, t.inverse_moments, t.reach, t.inner_radius, t.principal,
+        t.first_collider, t.user, t.mass);
 }
 template <class A> void describe(A& a, dynamics::BodyMotion& m) {
     all(a, m.position, m.rotation, m.linear_velocity, m.angular_velocity, m.sleep_time, m.drift, m.turn, m.island);
@@ -210,11 +210,11 @@ bool is_consistent(const WorldState& s) {
     std::vector<std::uint32_t> chained(colliders, 0);
     for (std::uint32_t body = 0; body < bodies; ++body) {
         const dynamics::BodyTraits& traits = s.bodies.traits[body];
-        if (traits.kind > BodyKind::Dynamic || traits.population > dynamics::Population::Awake) return false;
+        if (traits.kind > BodyKind::Dynamic || traits.motion_state > MotionState::Awake) return false;
         const std::uint32_t island = s.bodies.motion[body].island;
-        if (island != dynamics::no_index && island >= bodies) return false;
+        if (island != no_index && island >= bodies) return false;
         if (!s.body_ids.alive_at(body)) continue;
-        for (std::uint32_t c = traits.first_collider; c != dynamics::no_index; c = s.colliders[c].next) {
+        for (std::uint32_t c = traits.first_collider; c != no_index; c = s.colliders[c].next) {
             if (!s.collider_ids.alive_at(c) || s.colliders[c].body != body || chained[c]++ != 0) return false;
         }
     }
@@ -305,7 +305,7 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         next->own_tasks = std::move(state_->own_tasks);
         next->tasks = state_->tasks;
         next->solver.reference = state_->solver.reference;
-        next->suits_structures = state_->suits_structures;
+        next->picks_structures = state_->picks_structures;
         next->static_boxes = std::move(state_->static_boxes);
         next->asleep_boxes = std::move(state_->asleep_boxes);
         next->awake_boxes = std::move(state_->awake_boxes);
@@ -314,7 +314,7 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         for (std::uint32_t c = 0; c < next->collider_ids.size(); ++c) {
             if (!next->collider_ids.alive_at(c)) continue;
             const broad::Move move{c, next->boxes[c]};
-            boxes_of(*next, next->bodies.traits[next->colliders[c].body].population).insert(std::span(&move, 1));
+            boxes_of(*next, next->bodies.traits[next->colliders[c].body].motion_state).insert(std::span(&move, 1));
         }
         for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
             boxes->commit();

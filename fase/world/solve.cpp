@@ -1,11 +1,10 @@
 /// Stages "solve" and "finish": the solver moves the awake bodies, and their new state is taken over.
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 
 using dynamics::BodyMotion;
 using dynamics::BodyTraits;
-using dynamics::Population;
 
 namespace {
 
@@ -17,7 +16,7 @@ dynamics::SolverSettings solver_settings(const Settings& settings, float seconds
             settings.contact_damping_ratio,
             settings.push_out_speed,
             settings.restitution_threshold,
-            {settings.most_linear_speed, settings.most_angular_speed}};
+            {settings.max_linear_speed, settings.max_angular_speed}};
 }
 
 bool is_good(const BodyMotion& motion) {
@@ -33,8 +32,7 @@ void quarantine(WorldState& state, std::uint32_t body) {
     state.bodies.motion[body].linear_velocity = {};
     state.bodies.motion[body].angular_velocity = {};
     state.bodies.motion[body].island = body;
-    for (std::uint32_t c = state.bodies.traits[body].first_collider; c != dynamics::no_index;
-         c = state.colliders[c].next) {
+    for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
         state.changes[c] |= edited;  // its pairs end in the next step
         state.edited_colliders.push_back(c);
     }
@@ -74,7 +72,7 @@ void solve(WorldState& state, float seconds) {
         const dynamics::Contact& c = state.contacts[index];
         const auto moves = [&](std::uint32_t body) {
             const BodyTraits& traits = state.bodies.traits[body];
-            return traits.kind == BodyKind::Dynamic && traits.population == Population::Awake;
+            return traits.kind == BodyKind::Dynamic && traits.motion_state == MotionState::Awake;
         };
         return !moves(c.body_a) && !moves(c.body_b);
     });

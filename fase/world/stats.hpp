@@ -32,7 +32,7 @@ struct StepReport {
     std::uint32_t islands = 0;        ///< awake islands
     std::uint64_t bytes = 0;          ///< memory the world holds
     std::uint32_t speed_clamped = 0;  ///< bodies held at a cap
-    std::uint32_t pairs_dropped = 0;  ///< beyond Settings::most_pairs
+    std::uint32_t pairs_dropped = 0;  ///< beyond Settings::max_pairs
     std::uint32_t quarantined = 0;    ///< bodies taken out of play in this step
     std::string_view structure;       ///< the broad phase in which awake boxes stand
     std::string_view reason;          ///< why it was chosen; empty when the user named it

@@ -1,9 +1,9 @@
 /// One step, on one screen.
 #include <chrono>
 
-#include "fase/broad/suited_structure.hpp"
-#include "fase/core/float_mode.hpp"
-#include "fase/world/state.hpp"
+#include "fase/broad/auto_structure.hpp"
+#include "fase/core/detail/float_mode.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 namespace {
@@ -23,8 +23,8 @@ std::uint64_t bytes_held(const WorldState& s) {
     for (const broad::WideBvh& tree : s.query.trees) trees += tree.bytes();
     return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
            of(s.contacts) + of(s.active.pairs) + of(s.active.contacts) + of(s.resting.pairs) + of(s.resting.contacts) +
-           of(s.candidates) + of(s.askers) + of(s.previous_boxes) + s.static_boxes.bytes() + s.asleep_boxes.bytes() +
-           s.awake_boxes.bytes() + s.asleep.bytes() + s.solver.bytes();
+           of(s.candidates) + of(s.query_boxes) + of(s.previous_boxes) + s.static_boxes.bytes() +
+           s.asleep_boxes.bytes() + s.awake_boxes.bytes() + s.asleep.bytes() + s.solver.bytes();
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ void step(WorldState& state, float seconds) {
     }
     timed(state, Stage::Events, [&] { publish_events(state); });
     if (seconds > 0) timed(state, Stage::Sleep, [&] { fall_asleep(state, seconds); });
-    timed(state, Stage::Queries, [&] { keep_query_boxes(state); });
+    timed(state, Stage::Queries, [&] { update_query_trees(state); });
 
     ++state.steps;
     state.time += static_cast<double>(seconds);
@@ -56,7 +56,7 @@ void step(WorldState& state, float seconds) {
     state.report.asleep = static_cast<std::uint32_t>(state.asleep.bodies.size());
     state.report.pairs = static_cast<std::uint32_t>(state.active.size());
     state.report.structure = state.awake_boxes.info().name;
-    if (state.suits_structures) state.report.reason = broad::reason_for(state.report.structure);
+    if (state.picks_structures) state.report.reason = broad::reason_for(state.report.structure);
     state.report.bytes = bytes_held(state);
 }
 

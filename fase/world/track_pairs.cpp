@@ -1,14 +1,12 @@
 /// Stage "pairs": which grown boxes overlap, and what began and ended with it.
 #include <algorithm>
 
-#include "fase/broad/suited_structure.hpp"
-#include "fase/world/state.hpp"
+#include "fase/broad/auto_structure.hpp"
+#include "fase/world/detail/state.hpp"
 
 namespace fase {
 
 using broad::Pair;
-using dynamics::no_index;
-using dynamics::Population;
 
 namespace {
 
@@ -69,8 +67,8 @@ void wake_around_edits(WorldState& state) {
 }
 
 /// All colliders that ask: those that moved, and those that the user made or changed.
-void gather_askers(WorldState& state) {
-    state.askers.clear();
+void gather_queries(WorldState& state) {
+    state.query_boxes.clear();
     if (state.ask_all) {
         for (const std::uint32_t body : state.awake)
             for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
@@ -80,28 +78,29 @@ void gather_askers(WorldState& state) {
                 }
     }
     for (const std::uint32_t c : state.moved)
-        if (!(state.changes[c] & edited)) state.askers.push_back({c, state.boxes[c]});
+        if (!(state.changes[c] & edited)) state.query_boxes.push_back({c, state.boxes[c]});
     for (const std::uint32_t c : state.edited_colliders)
-        if (state.collider_ids.alive_at(c) && (state.changes[c] & edited)) state.askers.push_back({c, state.boxes[c]});
-    std::sort(state.askers.begin(), state.askers.end(),
+        if (state.collider_ids.alive_at(c) && (state.changes[c] & edited))
+            state.query_boxes.push_back({c, state.boxes[c]});
+    std::sort(state.query_boxes.begin(), state.query_boxes.end(),
               [](const broad::Move& a, const broad::Move& b) { return a.proxy < b.proxy; });
-    state.askers.erase(std::unique(state.askers.begin(), state.askers.end(),
-                                   [](const broad::Move& a, const broad::Move& b) { return a.proxy == b.proxy; }),
-                       state.askers.end());
+    state.query_boxes.erase(std::unique(state.query_boxes.begin(), state.query_boxes.end(),
+                                        [](const broad::Move& a, const broad::Move& b) { return a.proxy == b.proxy; }),
+                            state.query_boxes.end());
 }
 
-void ask(WorldState& state, std::span<const broad::Move> askers) {
+void ask(WorldState& state, std::span<const broad::Move> query_boxes) {
     for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes})
-        if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, askers, state.changes, state.candidates);
+        if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, query_boxes, state.changes, state.candidates);
 }
 
 /// Whether all askers together may well find more pairs than are wanted, judged by a sample of them.
 bool looks_crowded(WorldState& state, std::size_t limit) {
     constexpr std::size_t sample = 64;
-    if (state.askers.size() <= sample) return false;
-    const std::size_t stride = state.askers.size() / sample;
+    if (state.query_boxes.size() <= sample) return false;
+    const std::size_t stride = state.query_boxes.size() / sample;
     for (std::size_t i = 0; i < sample; ++i) {
-        ask(state, std::span<const broad::Move>(state.askers).subspan(i * stride, 1));
+        ask(state, std::span<const broad::Move>(state.query_boxes).subspan(i * stride, 1));
         if (state.candidates.size() > limit) break;
     }
     const bool crowded = state.candidates.size() * stride > limit / 4;
@@ -123,18 +122,18 @@ bool was_there(const WorldState& state, Pair pair) {
 /// reached: those with the largest numbers go without.
 void find_candidates(WorldState& state) {
     state.candidates.clear();
-    const auto limit = static_cast<std::size_t>(state.settings.most_pairs);
+    const auto limit = static_cast<std::size_t>(state.settings.max_pairs);
     const bool all_anew = state.ask_all;
     state.ask_all = false;
-    const std::size_t portion = limit != 0 && looks_crowded(state, limit) ? 64 : state.askers.size();
-    for (std::size_t begin = 0; begin < state.askers.size(); begin += portion) {
+    const std::size_t portion = limit != 0 && looks_crowded(state, limit) ? 64 : state.query_boxes.size();
+    for (std::size_t begin = 0; begin < state.query_boxes.size(); begin += portion) {
         if (limit != 0 && state.candidates.size() > limit) {
             state.ask_all = true;
-            state.report.pairs_dropped += static_cast<std::uint32_t>(state.askers.size() - begin);
+            state.report.pairs_dropped += static_cast<std::uint32_t>(state.query_boxes.size() - begin);
             break;
         }
-        ask(state,
-            std::span<const broad::Move>(state.askers).subspan(begin, std::min(portion, state.askers.size() - begin)));
+        ask(state, std::span<const broad::Move>(state.query_boxes)
+                       .subspan(begin, std::min(portion, state.query_boxes.size() - begin)));
     }
     state.report.candidates = state.candidates.size();
     std::erase_if(state.candidates,
@@ -203,36 +202,37 @@ void update_list(WorldState& state, PairList& list, std::span<const Pair> found)
 void track_pairs(WorldState& state) {
     const auto commit = [&] {
         for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) {
-            if (state.suits_structures) broad::suit(*boxes, broad::BoxUse::IsAsked);
+            if (state.picks_structures) broad::suit(*boxes, broad::BoxUse::IsAsked);
             boxes->commit(*state.tasks);
         }
     };
-    state.askers.clear();
-    for (const std::uint32_t c : state.moved) state.askers.push_back({c, state.boxes[c]});
-    state.awake_boxes.move(*state.tasks, state.askers);
+    state.query_boxes.clear();
+    for (const std::uint32_t c : state.moved) state.query_boxes.push_back({c, state.boxes[c]});
+    state.awake_boxes.move(*state.tasks, state.query_boxes);
     commit();
     const bool edits = state.removed_any || !state.edited_colliders.empty();
     if (edits) wake_around_edits(state);
-    gather_askers(state);
-    if (!state.askers.empty() || edits) {
+    gather_queries(state);
+    if (!state.query_boxes.empty() || edits) {
         find_candidates(state);
         // A new or moved obstacle wakes what it meets; what was made asleep wakes nobody.
         for (const Pair pair : state.candidates)
             for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
-                const bool acts = (state.changes[obstacle] & edited) && !(state.changes[other] & edited) &&
-                                  !state.colliders[obstacle].sensor &&
-                                  state.bodies.traits[state.colliders[obstacle].body].population != Population::Asleep;
+                const bool acts =
+                    (state.changes[obstacle] & edited) && !(state.changes[other] & edited) &&
+                    !state.colliders[obstacle].sensor &&
+                    state.bodies.traits[state.colliders[obstacle].body].motion_state != MotionState::Asleep;
                 if (acts) want_awake(state, state.colliders[other].body);
             }
         wake_wanted_islands(state);
         const auto awake_pair = [&](Pair pair) {
-            return state.bodies.traits[state.colliders[pair.a].body].population == Population::Awake ||
-                   state.bodies.traits[state.colliders[pair.b].body].population == Population::Awake;
+            return state.bodies.traits[state.colliders[pair.a].body].motion_state == MotionState::Awake ||
+                   state.bodies.traits[state.colliders[pair.b].body].motion_state == MotionState::Awake;
         };
         const auto middle = std::stable_partition(state.candidates.begin(), state.candidates.end(), awake_pair);
         const auto active = static_cast<std::size_t>(middle - state.candidates.begin());
         std::size_t room = active;
-        if (const auto limit = static_cast<std::size_t>(state.settings.most_pairs); limit != 0) {
+        if (const auto limit = static_cast<std::size_t>(state.settings.max_pairs); limit != 0) {
             room = std::min(active, limit > state.active.size() ? limit - state.active.size() : 0);
             state.report.pairs_dropped += static_cast<std::uint32_t>(active - room);
             state.ask_all = state.ask_all || room < active;

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <new>
 
-#include "fase/world/edit.hpp"
+#include "fase/world/detail/edit.hpp"
 
 namespace fase {
 namespace {
@@ -39,7 +39,7 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
         state->body_ids = IdPool<BodyTag>(number);
         state->collider_ids = IdPool<ColliderTag>(number);
         state->settings = settings;
-        state->suits_structures = setup.structure == "auto";
+        state->picks_structures = setup.structure == "auto";
         state->static_boxes = state->asleep_boxes = state->awake_boxes = *structure;
         if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
         state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();
@@ -85,14 +85,14 @@ BodyState state_of(const WorldState& state, BodyId id) {
     BodyState out;
     out.id = id;
     out.kind = traits.kind;
-    out.awake = traits.population == dynamics::Population::Awake;
+    out.awake = traits.motion_state == MotionState::Awake;
     out.quarantined = traits.quarantined;
     out.pose = body_pose(traits, motion);
     out.centre = motion.position;
     out.linear_velocity = motion.linear_velocity;
     out.angular_velocity = motion.angular_velocity;
     out.mass = traits.kind == BodyKind::Dynamic ? traits.mass.mass : 0;
-    out.island = traits.kind == BodyKind::Dynamic ? motion.island : dynamics::no_index;
+    out.island = traits.kind == BodyKind::Dynamic ? motion.island : no_index;
     out.user = traits.user;
     return out;
 }
@@ -132,7 +132,7 @@ void World::read_bodies(std::vector<BodyState>& out) const {
 std::vector<ColliderId> World::colliders_of(BodyId body) const {
     std::vector<ColliderId> out;
     if (!contains(body)) return out;
-    for (std::uint32_t c = state_->bodies.traits[body.index].first_collider; c != dynamics::no_index;
+    for (std::uint32_t c = state_->bodies.traits[body.index].first_collider; c != no_index;
          c = state_->colliders[c].next)
         out.push_back(*state_->collider_ids.id_at(c));
     return out;

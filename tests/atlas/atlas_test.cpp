@@ -10,7 +10,7 @@
 #include <set>
 
 #include "fase/atlas/png.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::atlas {
 namespace {

@@ -13,12 +13,12 @@
 namespace fase::atlas {
 namespace {
 
-std::vector<Size> any_sizes(int most_side) {
+std::vector<Size> any_sizes(int max_side) {
     return *rc::gen::container<std::vector<Size>>(rc::gen::apply(
         [](int width, int height) {
             return Size{width, height};
         },
-        rc::gen::inRange(1, most_side + 1), rc::gen::inRange(1, most_side + 1)));
+        rc::gen::inRange(1, max_side + 1), rc::gen::inRange(1, max_side + 1)));
 }
 PackOptions any_options() {
     PackOptions options;
@@ -196,7 +196,7 @@ TEST(Packer, StandsOddShapes) {
           random_sizes(3, 60000, 1), random_sizes(20000, 3, 2)}) {
         for (const bool rotate : {false, true}) {
             PackOptions options;
-            options.max_side = most_page_side;
+            options.max_side = max_page_side;
             options.rotate = rotate;
             options.tries = 12;
             const Result<Packing> packing = pack(sizes, options);

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::atlas {
 namespace {
@@ -31,8 +31,8 @@ std::vector<fs::path> files_of_suite(bool broken) {
 }
 std::vector<std::byte> bytes_of(const fs::path& path) { return *read_file(path.string(), 1 << 20); }
 
-Image any_image(int most_side) {
-    Image image(Size{*rc::gen::inRange(1, most_side), *rc::gen::inRange(1, most_side)});
+Image any_image(int max_side) {
+    Image image(Size{*rc::gen::inRange(1, max_side), *rc::gen::inRange(1, max_side)});
     for (std::uint8_t& value : image.pixels) value = *rc::gen::arbitrary<std::uint8_t>();
     return image;
 }

@@ -66,7 +66,7 @@ template <class S> void keeps_few_entries_for_huge_boxes() {
             boxes.push_back({p, cube(place(random, 0, huge ? 50 : 100), huge ? 50 : 0.1f)});
         }
         expect_like_brute_force(tree, boxes);
-        EXPECT_LE(stats_of(tree).entries, S::most_entries * boxes.size());
+        EXPECT_LE(stats_of(tree).entries, S::max_entries * boxes.size());
         EXPECT_EQ(stats_of(tree).leaves > 100, every == 8);
     }
 }

@@ -159,8 +159,8 @@ template <class S> void finds_boxes_outside_the_declared_bounds() {
     expect_like_brute_force(tree, boxes);
     for (const Aabb& bounds : {Aabb{}, Aabb::everything(), cube({5, 5, 5}, 0), cube({1e16f, 0, 0}, 1e-3f)}) {
         settings.bounds = bounds;
-        S odd(settings);
-        expect_like_brute_force(odd, boxes);
+        S unbounded(settings);
+        expect_like_brute_force(unbounded, boxes);
     }
 }
 

@@ -73,8 +73,8 @@ TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
     }
     Octree tree(Octree::Settings{.capacity = 1});
     expect_like_brute_force(tree, boxes);
-    EXPECT_LE(stats_of(tree).entries, Octree::most_entries * boxes.size());
-    EXPECT_GT(stats_of(tree).entries, Octree::most_entries / 2 * boxes.size()) << "the limit is not put to the test";
+    EXPECT_LE(stats_of(tree).entries, Octree::max_entries * boxes.size());
+    EXPECT_GT(stats_of(tree).entries, Octree::max_entries / 2 * boxes.size()) << "the limit is not put to the test";
 }
 
 /// More boxes in one leaf than are tested in one go, awake and not.

@@ -112,8 +112,8 @@ TEST(RowGrid, StoresTheSameWhenItDealsManyBoxesOut) {
 
 TEST(RowGrid, SeesAtCommitWhichBoxesHaveBecomeOddOrOrdinary) {
     const float nan = std::nanf("");
-    const std::array<Aabb, 4> odd{Aabb::everything(), Aabb{{1, 1, 1}, {0, 0, 0}}, Aabb{{nan, 0, 0}, {1, 1, 1}},
-                                  Aabb{{0, 0, -1e18f}, {1, 1, 1}}};
+    const std::array<Aabb, 4> unbounded{Aabb::everything(), Aabb{{1, 1, 1}, {0, 0, 0}}, Aabb{{nan, 0, 0}, {1, 1, 1}},
+                                        Aabb{{0, 0, -1e18f}, {1, 1, 1}}};
     for_each_target([&](const char* name) {
         SCOPED_TRACE(name);
         std::vector<Move> boxes = gas(2000, 13);
@@ -121,11 +121,11 @@ TEST(RowGrid, SeesAtCommitWhichBoxesHaveBecomeOddOrOrdinary) {
         RowGrid grid = grid_of(boxes);
         for (int step = 0; step < 6; ++step) {
             for (Proxy p = 0; p < 2000; ++p) {
-                boxes[p].box = (p + static_cast<Proxy>(step)) % 300 == 0 ? odd[p / 300 % 4] : usual[p].box;
+                boxes[p].box = (p + static_cast<Proxy>(step)) % 300 == 0 ? unbounded[p / 300 % 4] : usual[p].box;
                 grid.move(p, boxes[p].box);
             }
             if (step == 4) {  // all at once
-                for (Move& m : boxes) m.box = odd[m.proxy % 4];
+                for (Move& m : boxes) m.box = unbounded[m.proxy % 4];
                 for (const Move& m : boxes) grid.move(m.proxy, m.box);
             }
             grid.commit();
@@ -177,10 +177,10 @@ TEST(RowGrid, TakesMinusZeroForZero) {
     std::vector<Move> boxes{{0, {{-1, -1, -1}, {-0.0f, -0.0f, -0.0f}}}, {1, {{0.0f, 0.0f, 0.0f}, {1, 1, 1}}}};
     for (const Rows rows : {Rows::Table, Rows::List})
         EXPECT_EQ(found(grid_of(boxes, {.rows = rows})), (std::vector<Pair>{{0, 1}}));
-    const std::vector<Move> asker{{2, boxes[0].box}};
+    const std::vector<Move> query_box{{2, boxes[0].box}};
     for (const Move& stored : {Move{1, boxes[1].box}, Move{1, {{-0.0f, -0.0f, -0.0f}, {1, 1, 1}}}}) {
         std::vector<Pair> asked;
-        grid_of({stored}).find_pairs_of(asker, {}, asked);
+        grid_of({stored}).find_pairs_of(query_box, {}, asked);
         EXPECT_EQ(asked, (std::vector<Pair>{{1, 2}}));
     }
 }
@@ -319,7 +319,7 @@ TEST(RowGrid, TakesMemoryByTheNumberOfBoxesWhereverTheyAre) {
     }
 }
 
-TEST(RowGrid, AsksOnlyWhereAnAskerReaches) {
+TEST(RowGrid, SearchesOnlyWhereAQueryReaches) {
     const std::vector<Move> boxes = gas(5000, 11);
     const RowGrid grid = grid_of(boxes);
     std::size_t tested = 0;

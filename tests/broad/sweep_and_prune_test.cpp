@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fase/broad/brute_force.hpp"
-#include "fase/broad/build/radix_sort.hpp"
-#include "fase/broad/sweep_axis.hpp"
+#include "fase/broad/builders/radix_sort.hpp"
+#include "fase/broad/sweep/axis.hpp"
 #include "fase/core/random.hpp"
 #include "tests/broad/drawn_boxes.hpp"
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 #include "tests/record/artificial_run.hpp"
 
 namespace fase::cli {

@@ -209,7 +209,7 @@ private:
             ray.length = random.below(2) == 0 ? Aabb::infinity : static_cast<float>(length(way));
         }
         ask_along(ray, broad::RayMeasure(ray), ray.length);
-        const query::CarriedBox carried{ray, {-0.5f, -1, 0}, {0.25f, 0, 1}};
+        const query::SweptBox carried{ray, {-0.5f, -1, 0}, {0.25f, 0, 1}};
         ask_along(carried, broad::RayMeasure(ray, carried.before, carried.after), ray.length);
     }
 

@@ -110,34 +110,35 @@ TEST_P(EveryStructure, FindsTheSamePairsForAnyNumberOfThreads) {
     }
 }
 
-TEST_P(EveryStructure, AnswersAskersStoredOrNot) {
+TEST_P(EveryStructure, AnswersQueriesStoredOrNot) {
     Lives life = lives(11);
     life.insert(600);
     life.commit();
-    std::vector<Move> askers;
-    std::vector<std::uint8_t> is_asker(500, 0);
+    std::vector<Move> query_boxes;
+    std::vector<std::uint8_t> is_query(500, 0);
     life.judge.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
         if (p % 2 == 0 && p < 500) {
-            askers.push_back({p, box});
-            is_asker[p] = 1;
+            query_boxes.push_back({p, box});
+            is_query[p] = 1;
         }
         return true;
     });
-    const auto touches_asker = [&](Pair pair) {
-        return (pair.a < 500 && is_asker[pair.a] != 0) || (pair.b < 500 && is_asker[pair.b] != 0);
+    const auto touches_query = [&](Pair pair) {
+        return (pair.a < 500 && is_query[pair.a] != 0) || (pair.b < 500 && is_query[pair.b] != 0);
     };
     std::vector<Pair> expected;
     for (const Pair pair : all_pairs(life.judge))
-        if (touches_asker(pair)) expected.push_back(pair);
-    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, is_asker, out); }), expected);
+        if (touches_query(pair)) expected.push_back(pair);
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(query_boxes, is_query, out); }), expected);
     const auto tasks = make_thread_runner(3);
-    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, askers, is_asker, out); }), expected);
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, query_boxes, is_query, out); }),
+              expected);
 
     std::vector<Pair> twice = expected;  // pairs of two askers are found from both sides when nothing marks them
     for (const Pair pair : expected)
-        if (pair.a < 500 && is_asker[pair.a] != 0 && pair.b < 500 && is_asker[pair.b] != 0) twice.push_back(pair);
+        if (pair.a < 500 && is_query[pair.a] != 0 && pair.b < 500 && is_query[pair.b] != 0) twice.push_back(pair);
     std::sort(twice.begin(), twice.end());
-    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, out); }), twice);
+    EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(query_boxes, out); }), twice);
 
     const Move stranger{5000, std::get<1>(GetParam()).draw(life.random())};
     std::vector<Pair> strange;
@@ -145,24 +146,24 @@ TEST_P(EveryStructure, AnswersAskersStoredOrNot) {
     EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(std::span(&stranger, 1), out); }), strange);
 }
 
-TEST_P(EveryStructure, AnswersManyAskersAsItAnswersOneByOne) {
+TEST_P(EveryStructure, AnswersManyQueriesAsItAnswersOneByOne) {
     Lives life = lives(14);
     life.insert(700);
     life.commit();
-    std::vector<Move> askers;
+    std::vector<Move> query_boxes;
     life.judge.traverse(broad::Everything{}, [&](Proxy p, const Aabb& box) {
-        if (p % 5 != 0) askers.push_back({p, p % 7 == 0 ? std::get<1>(GetParam()).draw(life.random()) : box});
+        if (p % 5 != 0) query_boxes.push_back({p, p % 7 == 0 ? std::get<1>(GetParam()).draw(life.random()) : box});
         return true;
     });
-    for (Proxy p = 1000; p < 1100; ++p) askers.push_back({p, std::get<1>(GetParam()).draw(life.random())});
+    for (Proxy p = 1000; p < 1100; ++p) query_boxes.push_back({p, std::get<1>(GetParam()).draw(life.random())});
     std::vector<std::uint8_t> some_marked(900);
     for (std::uint8_t& mark : some_marked) mark = life.random().below(2) == 0 ? 0 : 4;
     for (const auto& marks : {std::vector<std::uint8_t>{}, some_marked}) {
-        const auto expected = sorted_pairs([&](auto& out) { life.judge.find_pairs_of(askers, marks, out); });
-        EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(askers, marks, out); }), expected);
+        const auto expected = sorted_pairs([&](auto& out) { life.judge.find_pairs_of(query_boxes, marks, out); });
+        EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(query_boxes, marks, out); }), expected);
         for (const int threads : {1, 2}) {
             const auto tasks = make_thread_runner(threads);
-            EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, askers, marks, out); }),
+            EXPECT_EQ(sorted_pairs([&](auto& out) { life.tested.find_pairs_of(*tasks, query_boxes, marks, out); }),
                       expected);
         }
     }

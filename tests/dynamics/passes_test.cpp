@@ -6,10 +6,10 @@
 #include <cstring>
 
 #include "fase/core/random.hpp"
-#include "fase/dynamics/colouring.hpp"
-#include "fase/dynamics/contact_passes.hpp"
-#include "fase/dynamics/integrate.hpp"
-#include "fase/dynamics/islands.hpp"
+#include "fase/dynamics/solver/colouring.hpp"
+#include "fase/dynamics/solver/contact_passes.hpp"
+#include "fase/dynamics/solver/integrate.hpp"
+#include "fase/dynamics/solver/islands.hpp"
 
 namespace fase::dynamics {
 namespace {

@@ -32,7 +32,7 @@ void expect_sound(const Map& map, const LevelBsp& bsp, const std::string& what) 
         EXPECT_EQ(s.first, next) << what;
         EXPECT_GE(s.edges, 3u) << what;
         EXPECT_LT(s.sector, map.sectors.size()) << what;
-        next += s.edges + s.strays;
+        next += s.edges + s.outliers;
         for (std::uint32_t k = s.first; k < next; ++k) EXPECT_EQ(bsp.segs[k].sub_sector, i) << what;
     }
     EXPECT_EQ(next, bsp.segs.size()) << what;
@@ -69,7 +69,7 @@ void expect_right(const Map& map, const LevelBsp& bsp, const std::string& what) 
     EXPECT_LT(check.area_error, 1e-9) << what << ", sector " << check.worst_sector;
     EXPECT_EQ(check.open_sectors, 0u) << what;
     EXPECT_EQ(check.openings, 0u) << what;
-    for (const SubSector& s : bsp.sub_sectors) EXPECT_EQ(s.strays, 0u) << what;
+    for (const SubSector& s : bsp.sub_sectors) EXPECT_EQ(s.outliers, 0u) << what;
 }
 
 /// The sector around a point by its winding number; none when no sector goes around it.
@@ -257,7 +257,7 @@ TEST(BspCompiler, KeepsLinesOverEachOtherAsStrays) {
     expect_sound(half.map, bsp, "overlap");
     ASSERT_EQ(bsp.sub_sectors.size(), 1u);
     EXPECT_EQ(bsp.sub_sectors[0].edges, 4u);
-    EXPECT_EQ(bsp.sub_sectors[0].strays, 2u);
+    EXPECT_EQ(bsp.sub_sectors[0].outliers, 2u);
 }
 
 TEST(BspCompiler, CutsAlongALineThatEndsInTheRoom) {
@@ -331,7 +331,7 @@ TEST(BspCompiler, LosesNoAreaInSlivers) {
 
 TEST(BspCompiler, GivesUpWhenPiecesBecomeTooMany) {
     CompileOptions options;
-    options.most_pieces = 500;
+    options.max_pieces = 500;
     const auto bsp = compile(soup_map(200, 1000, 1), options);
     ASSERT_FALSE(bsp);
     EXPECT_EQ(bsp.status(), Status::Capacity);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fase/core/random.hpp"
-#include "fase/level/little_endian.hpp"
+#include "fase/level/detail/little_endian.hpp"
 #include "fase/level/map.hpp"
 
 namespace fase::level {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "fase/level/doorways.hpp"
 #include "fase/level/seen_from.hpp"
+#include "fase/level/visibility/doorways.hpp"
 #include "tests/level/freedoom.hpp"
 
 namespace fase::level {
@@ -164,8 +164,8 @@ TEST(FindVisible, GivesTheCoarseAnswerWhenStepsRunOut) {
     if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     const Level& level = levels[0];
     const auto fine = find_visible(level.bsp, level.map);
-    const auto some = find_visible(level.bsp, level.map, {.most_steps = 300});
-    const auto coarse = find_visible(level.bsp, level.map, {.most_steps = 0});
+    const auto some = find_visible(level.bsp, level.map, {.max_steps = 300});
+    const auto coarse = find_visible(level.bsp, level.map, {.max_steps = 0});
     ASSERT_TRUE(fine && some && coarse);
     EXPECT_GT(some->stats.coarse, 0u);
     EXPECT_LT(some->stats.coarse, some->stats.openings);
@@ -191,7 +191,7 @@ TEST(FindVisible, GivesTheSameSetsForAnyNumberOfThreads) {
 
 TEST(FindVisible, SaysHowMuchMemoryItNeeds) {
     const Level level = grid({"aaaaa"});
-    const auto refused = find_visible(level.bsp, level.map, {.most_bytes = 3});
+    const auto refused = find_visible(level.bsp, level.map, {.max_bytes = 3});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.status(), Status::Capacity);
     EXPECT_EQ(refused.error().where, "VisibleOptions.most_bytes");

@@ -248,11 +248,11 @@ TEST(PolygonBsp, HasFewLevelsForConvexSets) {
 
 TEST(PolygonBsp, AnswersTheSameWhenALimitLeavesPolygonsInLeaves) {
     const TriangleMesh mesh = torus(2, 0.75f, 40, 16);
-    for (const PolygonBspOptions& options : {PolygonBspOptions{.most_depth = 3}, PolygonBspOptions{.most_pieces = 1},
-                                             PolygonBspOptions{.most_depth = 1}}) {
+    for (const PolygonBspOptions& options :
+         {PolygonBspOptions{.max_depth = 3}, PolygonBspOptions{.max_pieces = 1}, PolygonBspOptions{.max_depth = 1}}) {
         const PolygonBsp tree = built(mesh, options);
         EXPECT_GT(tree.stats().mixed, 0u);
-        EXPECT_LE(tree.stats().worst_depth, options.most_depth);
+        EXPECT_LE(tree.stats().worst_depth, options.max_depth);
         Random random(2);
         const Box3 box = box_of(mesh, 0.2);
         for (int i = 0; i < 300; ++i) {
@@ -333,8 +333,8 @@ TEST(PolygonBsp, RefusesWhatIsNoMesh) {
     EXPECT_EQ(PolygonBsp::build(cube, {.weights = {-1, 2}}).status(), Status::BadArgument);
     EXPECT_EQ(PolygonBsp::build(cube, {.candidates = 0}).status(), Status::BadArgument);
     EXPECT_EQ(PolygonBsp::build(cube, {.thickness = -1}).status(), Status::BadArgument);
-    EXPECT_EQ(PolygonBsp::build(cube, {.most_depth = 0}).status(), Status::BadArgument);
-    EXPECT_EQ(PolygonBsp::build(cube, {.most_depth = 5000}).status(), Status::BadArgument);
+    EXPECT_EQ(PolygonBsp::build(cube, {.max_depth = 0}).status(), Status::BadArgument);
+    EXPECT_EQ(PolygonBsp::build(cube, {.max_depth = 5000}).status(), Status::BadArgument);
 }
 
 TEST(PolygonBsp, AnswersOddQuestions) {

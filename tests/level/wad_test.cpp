@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/core/random.hpp"
-#include "fase/level/little_endian.hpp"
+#include "fase/level/detail/little_endian.hpp"
 #include "fase/level/map.hpp"
 
 namespace fase::level {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "fase/geometry/bounds.hpp"
-#include "fase/narrow/advance.hpp"
+#include "fase/narrow/detail/advance.hpp"
 #include "fase/narrow/distance.hpp"
 #include "tests/math/arbitrary.hpp"
 #include "tests/narrow/random_shapes.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fase/narrow/general.hpp"
+#include "fase/narrow/detail/general.hpp"
 #include "tests/narrow/random_shapes.hpp"
 
 namespace fase {
@@ -73,7 +73,7 @@ TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactTurnedRound) {
         const Shape a = random_shape(random, kind_a), b = random_shape(random, kind_b);
         const LocalPose x = random_pose(random);
         const Manifold m = collide(a, b, x, 0.05f);
-        const Manifold back = narrow::turned_round(collide(b, a, inverse(x), 0.05f), x);
+        const Manifold back = narrow::flipped(collide(b, a, inverse(x), 0.05f), x);
         // Only rounding lies between: a point at the very margin may come or go.
         if (m.count != back.count) continue;
         if (m.count == 0 || dot(m.normal, back.normal) < 0.999f) continue;
@@ -114,14 +114,14 @@ TEST(Dispatch, SpecialPairsAgreeWithTheGeneralPath) {
         const Shape a = random_shape(random, kind_a), b = random_shape(random, kind_b);
         const LocalPose x = random_pose(random);
         const Manifold special = collide(a, b, x, 0.05f), general = narrow::collide_general(a, b, x, 0.05f);
-        float least = 0.05f, least_general = 0.05f;
+        float least = 0.05f, min_general = 0.05f;
         for (int k = 0; k < special.count; ++k)
             least = std::min(least, special.points[static_cast<std::size_t>(k)].separation);
         for (int k = 0; k < general.count; ++k) {
-            least_general = std::min(least_general, general.points[static_cast<std::size_t>(k)].separation);
+            min_general = std::min(min_general, general.points[static_cast<std::size_t>(k)].separation);
         }
-        const float slack = 5e-3f + 0.03f * std::abs(least_general);
-        ASSERT_NEAR(least, least_general, slack) << i << " " << name_of(a) << " " << name_of(b);
+        const float slack = 5e-3f + 0.03f * std::abs(min_general);
+        ASSERT_NEAR(least, min_general, slack) << i << " " << name_of(a) << " " << name_of(b);
         if (special.count == 0 || general.count == 0) continue;
         ++compared;
         // Nearly equal ways out: either is right.

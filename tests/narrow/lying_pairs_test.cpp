@@ -103,7 +103,7 @@ TEST(LyingPairs, FacesWithMoreCornersThanAnyBufferGiveFourPointsFarApart) {
             const float angle = 6.2831853f * (static_cast<float>(i) + 0.25f) / static_cast<float>(corners);
             for (const float y : {-0.5f, 0.5f}) points.push_back({std::cos(angle), y, std::sin(angle)});
         }
-        return *build_convex_hull(points, {.most_vertices = 1000});
+        return *build_convex_hull(points, {.max_vertices = 1000});
     };
     const ConvexHull a = drum(120), b = drum(100);
     const Manifold m = collide(a, b, {{0.1f, 0.99f, 0}, {}}, 0.02f);

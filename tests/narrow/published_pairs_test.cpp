@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fase/narrow/general.hpp"
+#include "fase/narrow/detail/general.hpp"
 #include "fase/narrow/pairs/collide_box_box.hpp"
 #include "fase/narrow/pairs/collide_box_capsule.hpp"
 #include "fase/narrow/pairs/collide_box_convex_hull.hpp"
@@ -44,7 +44,7 @@ template <class A_, class B_> struct PairOf {
                                           (std::is_same_v<A, Capsule> && std::is_same_v<B, ConvexHull>);
 };
 
-double least_separation(const Manifold& manifold) {
+double min_separation(const Manifold& manifold) {
     double least = 1e300;
     for (int k = 0; k < manifold.count; ++k) {
         least = std::min(least, double(manifold.points[static_cast<std::size_t>(k)].separation));
@@ -115,7 +115,7 @@ TYPED_TEST(SpecialPair, HasTheDepthOfTheExactDistance) {
     int outliers = 0;
     for_many_pairs<TypeParam>(3, 3000, [&](const PairSample& pair, float margin, const Manifold& m, double exact) {
         if (m.count == 0) return;
-        const double error = std::abs(least_separation(m) - exact);
+        const double error = std::abs(min_separation(m) - exact);
         double tolerance = 1e-4 * pair.size;
         if (TypeParam::prefers_faces) tolerance += 0.05 * std::abs(exact);
         if (exact > 0 && TypeParam::polyhedra) {
@@ -133,7 +133,7 @@ TYPED_TEST(SpecialPair, IsSeparatedByAMoveAlongTheNormal) {
     for_many_pairs<TypeParam>(4, 1500, [](const PairSample& pair, float, const Manifold& m, double exact) {
         if (m.count == 0 || exact > 0) return;
         TransformD apart = to_double(pair.b_in_a);
-        apart.position = apart.position - to_double(m.normal) * least_separation(m);
+        apart.position = apart.position - to_double(m.normal) * min_separation(m);
         // An edge contact that gave way to a face leaves a little.
         const double left = TypeParam::prefers_faces ? 0.05 * std::abs(exact) : 0.0;
         ASSERT_GE(narrow::signed_distance(pair.a, pair.b, apart).distance, -1e-4 * pair.size - left);
@@ -189,10 +189,10 @@ TYPED_TEST(SpecialPair, IsTheSameInEveryWorldFrame) {
         pair.b_in_a = again;
         const Manifold n = TypeParam::collide(pair, margin);
         if (m.count > 0 && n.count > 0) {
-            ASSERT_NEAR(least_separation(m), least_separation(n), 2e-3 * pair.size);
+            ASSERT_NEAR(min_separation(m), min_separation(n), 2e-3 * pair.size);
         } else {
             // One has lost the contact at the edge of the margin.
-            ASSERT_TRUE(m.count == n.count || least_separation(m.count > 0 ? m : n) > margin - 1e-4 * pair.size);
+            ASSERT_TRUE(m.count == n.count || min_separation(m.count > 0 ? m : n) > margin - 1e-4 * pair.size);
         }
     }
 }
@@ -203,7 +203,7 @@ TYPED_TEST(SpecialPair, AgreesWithTheGeneralPath) {
         if (exact > 0.5 * margin) return;
         const Manifold general = narrow::collide_general(pair.a, pair.b, pair.b_in_a, margin);
         ASSERT_GT(general.count, 0);
-        ASSERT_NEAR(least_separation(m), least_separation(general),
+        ASSERT_NEAR(min_separation(m), min_separation(general),
                     2e-3 * pair.size + 0.06 * std::abs(exact) + 0.5 * margin);
         ++all;
         differ += dot(m.normal, general.normal) < 0.98f ? 1 : 0;
@@ -250,14 +250,14 @@ template <class S> void expect_mirrored(std::uint64_t seed) {
         const float margin = static_cast<float>(0.05 * smaller_size(pair));
         const S &a = std::get<S>(pair.a), &b = std::get<S>(pair.b);
         const Manifold m = narrow::collide(a, b, pair.b_in_a, margin);
-        const Manifold n = narrow::turned_round(narrow::collide(b, a, inverse(pair.b_in_a), margin), pair.b_in_a);
+        const Manifold n = narrow::flipped(narrow::collide(b, a, inverse(pair.b_in_a), margin), pair.b_in_a);
         if (m.count == 0 || n.count == 0) {
-            ASSERT_TRUE(m.count == n.count || least_separation(m.count > 0 ? m : n) > 0.5f * margin);
+            ASSERT_TRUE(m.count == n.count || min_separation(m.count > 0 ? m : n) > 0.5f * margin);
             continue;
         }
         // Where a face of each is as good as the other, each order takes its own.
-        ASSERT_NEAR(least_separation(m), least_separation(n),
-                    1e-3 * pair.size + 0.06 * std::abs(least_separation(m)) + 0.2 * margin)
+        ASSERT_NEAR(min_separation(m), min_separation(n),
+                    1e-3 * pair.size + 0.06 * std::abs(min_separation(m)) + 0.2 * margin)
             << "pair " << i;
         other_way += dot(m.normal, n.normal) < 0.98f ? 1 : 0;
     }

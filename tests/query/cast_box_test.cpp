@@ -14,7 +14,7 @@ TEST_P(EveryCarriedBox, TouchesOnItsWayWhatAMovingBoxTouches) {
         const auto boxes = *any_boxes();
         const Aabb mine = *any_box();
         const Ray way = *any_ray();
-        const CarriedBox carried = carry(mine, way.direction, way.length);
+        const SweptBox carried = carry(mine, way.direction, way.length);
         const AnyStructure structure = filled(GetParam(), boxes);
         std::vector<Hit> hits;
         all_hits(structure, carried, hits);

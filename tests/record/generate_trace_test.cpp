@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "fase/broad/plain_sweep.hpp"
+#include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/hash.hpp"
 #include "fase/record/trace.hpp"
 #include "tests/record/artificial_run.hpp"

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <functional>
 
-#include "fase/record/bytes.hpp"
-#include "fase/record/chunk_packer.hpp"
-#include "fase/record/crc32.hpp"
+#include "fase/record/recording/bytes.hpp"
+#include "fase/record/recording/chunk_packer.hpp"
+#include "fase/record/recording/crc32.hpp"
 #include "tests/record/artificial_run.hpp"
 
 namespace fase::record {

@@ -51,7 +51,7 @@ template <class F> void for_each_near(const Scene& scene, float margin, F&& f) {
     }
 }
 
-float least_separation(const narrow::Manifold& manifold) {
+float min_separation(const narrow::Manifold& manifold) {
     float least = 1e9f;
     for (int i = 0; i < manifold.count; ++i)
         least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
@@ -63,10 +63,10 @@ TEST(Generate, NoTwoBodiesOverlapAtTheStart) {
         const Scene scene = *generate(kind.name);
         std::size_t overlapping = 0;
         for_each_near(scene, 0, [&](std::uint32_t a, std::uint32_t b, const narrow::Manifold& manifold) {
-            if (least_separation(manifold) >= -2e-6f) return;
+            if (min_separation(manifold) >= -2e-6f) return;
             if (overlapping++ < 3)
                 ADD_FAILURE() << kind.name << ": " << scene.bodies[a].name << " " << a << " and "
-                              << scene.bodies[b].name << " " << b << " overlap by " << -least_separation(manifold);
+                              << scene.bodies[b].name << " " << b << " overlap by " << -min_separation(manifold);
         });
         EXPECT_EQ(overlapping, 0u) << kind.name;
     }

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "fase/geometry/mass.hpp"
+#include "fase/scene/detail/json.hpp"
 #include "fase/scene/gltf_write.hpp"
-#include "fase/scene/json.hpp"
 #include "tests/scene/support.hpp"
 
 namespace fase::scene {

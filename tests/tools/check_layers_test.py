@@ -10,8 +10,8 @@ GOOD = {
     "fase/core/ids.hpp": "#include <cstdint>\n",
     "fase/math/vec3.hpp": '#include "fase/core/ids.hpp"\n',
     "fase/broad/grid.hpp": '#include "fase/math/vec3.hpp"\n',
-    "fase/narrow/gjk.hpp": '#include "fase/math/vec3.hpp"\n',
-    "cli/main.cpp": '#include "fase/narrow/gjk.hpp"\n#include "fase/broad/grid.hpp"\n',
+    "fase/narrow/detail/gjk.hpp": '#include "fase/math/vec3.hpp"\n',
+    "cli/main.cpp": '#include "fase/narrow/detail/gjk.hpp"\n#include "fase/broad/grid.hpp"\n',
 }
 
 

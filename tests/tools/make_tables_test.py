@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import make_tables  # noqa: E402
 
-HEADER = ("date,commit,machine,scene,engine,settings,threads,steps,rounds,mean_ms,median_ms,worst_ms,least_ms,mean_ms_low,"
+HEADER = ("date,commit,machine,scene,engine,settings,threads,steps,rounds,mean_ms,median_ms,worst_ms,min_ms,mean_ms_low,"
           "mean_ms_high,bodies,contacts,hash,top_height,mean_height,drift\n")
 
 

@@ -1,5 +1,5 @@
 // The same calls give the same bits: for any threads, structure, lanes, and after a snapshot.
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {

@@ -1,5 +1,5 @@
 // Bodies that are changed while the world lives.
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {

@@ -10,7 +10,7 @@
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/cast_shape.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/world/state.hpp"
+#include "fase/world/detail/state.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {
@@ -342,7 +342,7 @@ TEST(Query, follows_the_fastest_bodies_through_edits) {
     for (const BodyId body : fast) ASSERT_TRUE(world.apply_force(body, {0, 4e5f, 0}));
     run(world, 1.0 / 60);
     expect_right(world, 1);
-    ASSERT_FALSE(world.state().query.strays.empty());
+    ASSERT_FALSE(world.state().query.outliers.empty());
     ASSERT_TRUE(world.set_pose(fast[0], {{1, 1, 1}, {}}));
     ASSERT_TRUE(world.remove_body(fast[1]));
     add(world, {.position = {-1, -1, -1}}, Box{});

@@ -139,7 +139,7 @@ TEST_F(Refusals, settings_out_of_range) {
     with([](Settings& s) { s.time_step = nan; }, "time_step");
     with([](Settings& s) { s.gravity.y = inf; }, "gravity");
     with([](Settings& s) { s.contact_frequency = -1; }, "contact_frequency");
-    with([](Settings& s) { s.most_pairs = -1; }, "most_pairs");
+    with([](Settings& s) { s.max_pairs = -1; }, "most_pairs");
     EXPECT_EQ(World::create({}, {.structure = "no_such_tree"}).status(), Status::BadArgument);
     EXPECT_NE(World::create({}, {.structure = "no_such_tree"}).error().text().find("dynamic_bvh"), std::string::npos);
     EXPECT_EQ(World::create({}, {.threads = -1}).status(), Status::BadArgument);
@@ -179,7 +179,7 @@ TEST_F(Refusals, speeds_beyond_the_cap_are_held_and_counted) {
 
 TEST_F(Refusals, coincident_bodies_beyond_the_limit_of_pairs_are_counted_not_fatal) {
     Settings settings;
-    settings.most_pairs = 1000;
+    settings.max_pairs = 1000;
     World crowd = make_world(settings);
     for (int i = 0; i < 300; ++i) add(crowd, {.position = {0, 5, 0}}, Sphere{});
     const auto report = crowd.step();

@@ -1,6 +1,6 @@
 #pragma once
 /// A rectangle over a rectangle: the contact of two boxes whose normal is a face's.
-#include "fase/narrow/polygon.hpp"
+#include "fase/narrow/detail/polygon.hpp"
 
 namespace fase::narrow {
 

@@ -166,10 +166,10 @@ inline Manifold touch_faces(const Box& a, const Box& b, Vec3 t, const Turned& tu
     if (!(of_b[0] <= margin && of_b[1] <= margin && of_b[2] <= margin)) return {};
 
     const auto least = [](float x, float y, float z) { return x < y ? (x < z ? x : z) : (y < z ? y : z); };
-    const float least_a = least(ha[0], ha[1], ha[2]), least_b = least(hb[0], hb[1], hb[2]);
+    const float min_a = least(ha[0], ha[1], ha[2]), min_b = least(hb[0], hb[1], hb[2]);
     const float total = ha[0] + ha[1] + ha[2] + hb[0] + hb[1] + hb[2];
     const float noise = 4e-7f * total;
-    const float clearly = noise + 2e-4f * (least_a < least_b ? least_a : least_b);
+    const float clearly = noise + 2e-4f * (min_a < min_b ? min_a : min_b);
     box_box::Axis best = {of_a[0], 0, -1};
     for (int i = 1; i < 3; ++i) {
         if (of_a[i] > best.separation + clearly) best = {of_a[i], i, -1};

@@ -1,8 +1,8 @@
 #pragma once
 /// A convex hull on the ground.
 #include "fase/geometry/shapes/convex_hull.hpp"
+#include "fase/narrow/detail/polygon.hpp"
 #include "fase/narrow/pairs/ground.hpp"
-#include "fase/narrow/polygon.hpp"
 
 namespace fase::narrow {
 

@@ -3,8 +3,8 @@
 /// corners.
 #include <cmath>
 
+#include "fase/narrow/detail/polygon.hpp"
 #include "fase/narrow/pairs/hull_view.hpp"
-#include "fase/narrow/polygon.hpp"
 
 namespace fase::narrow {
 

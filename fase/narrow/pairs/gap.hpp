@@ -1,6 +1,6 @@
 #pragma once
 /// Two shapes that pass each other where no face lies over the other: one contact from their closest points.
-#include "fase/narrow/gjk.hpp"
+#include "fase/narrow/detail/gjk.hpp"
 #include "fase/narrow/manifold.hpp"
 
 namespace fase::narrow {

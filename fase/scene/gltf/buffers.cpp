@@ -6,14 +6,14 @@
 #include <cmath>
 #include <cstring>
 
-#include "fase/core/files.hpp"
+#include "fase/core/detail/files.hpp"
+#include "fase/scene/detail/uri.hpp"
 #include "fase/scene/gltf/document.hpp"
-#include "fase/scene/uri.hpp"
 
 namespace fase::scene::gltf {
 namespace {
 
-constexpr std::size_t most_buffer_bytes = std::size_t{1} << 32;
+constexpr std::size_t max_buffer_bytes = std::size_t{1} << 32;
 
 std::uint64_t component_bytes(JsonValue at, std::uint64_t type) {
     switch (type) {
@@ -98,7 +98,7 @@ void Document::load_buffers() {
                 refuse(*buffer.find("uri"), path.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
             auto& file = files[*path];
             if (!file) {
-                Result<std::vector<std::byte>> read = read_file(*path, most_buffer_bytes);
+                Result<std::vector<std::byte>> read = read_file(*path, max_buffer_bytes);
                 if (!read)
                     refuse(*buffer.find("uri"), read.error().problem, fmt::format("the uri is {}", quoted_short(*uri)));
                 file = std::make_shared<const std::vector<std::byte>>(*std::move(read));
@@ -363,9 +363,9 @@ std::vector<std::uint32_t> Document::triangles(const Primitive& primitive, std::
     }
     std::vector<std::uint32_t> out;
     for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-        const bool fan = primitive.mode == 6, odd = i % 2 == 1;
-        out.push_back(fan ? corners[i + 1] : corners[odd ? i + 1 : i]);
-        out.push_back(fan ? corners[i + 2] : corners[odd ? i : i + 1]);
+        const bool fan = primitive.mode == 6, unbounded = i % 2 == 1;
+        out.push_back(fan ? corners[i + 1] : corners[unbounded ? i + 1 : i]);
+        out.push_back(fan ? corners[i + 2] : corners[unbounded ? i : i + 1]);
         out.push_back(fan ? corners[0] : corners[i + 2]);
     }
     return out;

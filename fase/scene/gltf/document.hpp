@@ -71,7 +71,7 @@ public:
 
 private:
     struct Accessor;
-    static constexpr std::size_t most_levels = 4096;  ///< of nodes below each other
+    static constexpr std::size_t max_levels = 4096;  ///< of nodes below each other
 
     void read_container(const std::vector<std::byte>& bytes);
     void check_asset() const;
@@ -118,7 +118,7 @@ template <class F> void Document::walk(std::uint32_t root, const Placement& star
             continue;
         }
         const std::uint32_t child = top.children[top.next++];
-        if (levels.size() == most_levels) refuse(nodes_[child], "found nodes more than 4096 levels deep, need fewer");
+        if (levels.size() == max_levels) refuse(nodes_[child], "found nodes more than 4096 levels deep, need fewer");
         levels.push_back(enter(child, top.placement * local(child)));
     }
 }

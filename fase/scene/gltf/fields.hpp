@@ -12,7 +12,7 @@
 
 #include "fase/core/result.hpp"
 #include "fase/math/quat.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::scene::gltf {
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "fase/math/quat.hpp"
-#include "fase/scene/json.hpp"
+#include "fase/scene/detail/json.hpp"
 
 namespace fase::scene::gltf {
 

@@ -1,0 +1,135 @@
+/// The command `fase bench queries`: times rays, overlaps and cameras in each structure, beside peers.
+#include "cli/bench/queries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "bench/table_file.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/progress.hpp"
+#include "cli/common/start.hpp"
+#include "cli/common/table.hpp"
+#include "fase/broad/any_structure.hpp"
+#include "fase/scene/detail/json.hpp"
+
+namespace fase::cli {
+namespace {
+
+std::string to_json(const std::vector<bench::QueryRow>& rows) {
+    std::string text = "[";
+    for (const bench::QueryRow& row : rows) {
+        text += text.size() == 1 ? "\n" : ",\n";
+        text += fmt::format(
+            "{{\"scene\": {}, \"contender\": {}, \"kind\": \"{}\", \"things\": {}, \"rounds\": {}, \"asked\": {}, "
+            "\"per_second\": {:.6g}, \"low\": {:.6g}, \"high\": {:.6g}, \"hits\": {}, \"compared\": {}, \"differ\": "
+            "{}, ",
+            scene::quoted(row.scene), scene::quoted(row.contender), row.kind, row.things, row.rounds, row.asked,
+            row.per_second, row.low, row.high, row.hits, row.compared, row.differ);
+        text += fmt::format("\"build_ms\": {:.6g}, \"bytes\": {}, \"settings\": {}}}", row.build_ms,
+                            row.bytes == 0 ? "null" : std::to_string(row.bytes), scene::quoted(row.settings));
+    }
+    return text + "\n]\n";
+}
+
+std::string to_table(const std::vector<bench::QueryRow>& rows) {
+    Table table({"contender", "kind", "a second", "low", "high", "asked", "hits", "differ", "build ms", "scene"});
+    for (const bench::QueryRow& row : rows) {
+        table.add({row.contender, row.kind, fmt::format("{:.0f}", row.per_second), fmt::format("{:.0f}", row.low),
+                   fmt::format("{:.0f}", row.high), std::to_string(row.asked), std::to_string(row.hits),
+                   std::to_string(row.differ), fmt::format("{:.1f}", row.build_ms), printable(row.scene)});
+    }
+    return table.text();
+}
+
+Result<void> save(const std::string& file, const std::vector<bench::QueryRow>& rows) {
+    if (file.empty() || rows.empty()) return {};
+    const bench::Origin origin = bench::origin_of_figures();
+    std::vector<std::vector<std::string>> lines;
+    for (const bench::QueryRow& row : rows) {
+        lines.push_back({origin.date, origin.commit, origin.machine, row.scene, row.contender, row.settings, row.kind,
+                         std::to_string(row.things), std::to_string(row.rounds), std::to_string(row.asked),
+                         fmt::format("{:.1f}", row.per_second), fmt::format("{:.1f}", row.low),
+                         fmt::format("{:.1f}", row.high), std::to_string(row.hits), std::to_string(row.compared),
+                         std::to_string(row.differ), fmt::format("{:.2f}", row.build_ms),
+                         row.bytes == 0 ? "" : std::to_string(row.bytes)});
+    }
+    static const std::vector<std::string> columns{"date", "commit", "machine",  "scene",  "contender",  "settings",
+                                                  "kind", "things", "rounds",   "asked",  "per_second", "low",
+                                                  "high", "hits",   "compared", "differ", "build_ms",   "bytes"};
+    return bench::append_to_table(file, columns, lines);
+}
+
+/// A structure of the registry must give the very answers of the others; peers may round in their own way.
+bool is_wrong(const bench::QueryRow& row) {
+    return row.differ != 0 && broad::AnyStructure::named(row.contender).has_value();
+}
+
+}  // namespace
+
+int run_bench_queries(const BenchQueriesOptions& options) {
+    if (!options.csv.empty()) {
+        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+    }
+    const Result<std::vector<bench::QueryScene>> scenes = bench::query_scenes(options);
+    if (!scenes) return refuse(scenes.error());
+    const ProgressForm form = progress_form(options.json);
+    const Interrupts interrupts;
+    std::vector<bench::QueryRow> rows;
+    for (const bench::QueryScene& scene : *scenes) {
+        std::optional<Progress> progress;
+        const auto tell = [&](std::uint64_t done, std::uint64_t total, std::string_view name,
+                              std::string_view contender) {
+            if (!progress) progress.emplace(form, "part", total);
+            if (progress->due()) progress->update(done, fmt::format("{} {}", name, contender));
+            return Interrupts::signal() == 0;
+        };
+        const Result<std::vector<bench::QueryRow>> measured = bench::measure_queries(scene, options, tell);
+        if (!measured) return refuse(measured.error());
+        if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
+        rows.insert(rows.end(), measured->begin(), measured->end());
+        if (Interrupts::signal() != 0) break;
+    }
+    const std::string text = options.json ? to_json(rows) : to_table(rows);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
+    return std::any_of(rows.begin(), rows.end(), is_wrong) ? exit_check_failed : exit_ok;
+}
+
+void add_bench_queries(CLI::App& bench_group, Start& start) {
+    auto& bench = start.options<BenchQueriesOptions>();
+    CLI::App& command = *bench_group.add_subcommand("queries", "Time rays, overlaps and cameras");
+    std::string names;
+    for (const bench::QueryContenderInfo& info : bench::query_contenders()) names += ", " + info.name;
+    add_text(command, "--scene", "level, static or pile (default: all)", bench.scene);
+    command.add_option("--mesh", bench.meshes, "OBJ files for the scene level (default: a generated one)");
+    add_text(command, "--contender", "all (default), or some, commas between, of " + names.substr(2), bench.contender);
+    add_whole_number(command, "--count", "Boxes of static (default 1000000); pile has a fiftieth", 1, 100000000,
+                     [&bench](std::uint64_t count) { bench.counts.things = count; });
+    add_whole_number(command, "--rays", "Rays (default 100000)", 1, 100000000,
+                     [&bench](std::uint64_t count) { bench.counts.rays = count; });
+    add_whole_number(command, "--boxes", "Boxes that overlaps are sought of (default 100000)", 1, 100000000,
+                     [&bench](std::uint64_t count) { bench.counts.boxes = count; });
+    add_whole_number(command, "--frusta", "Cameras (default 200)", 1, 1000000,
+                     [&bench](std::uint64_t count) { bench.counts.frusta = count; });
+    add_whole_number(command, "--rounds", "How often it is all done (default 3)", 1, 1000, bench.rounds);
+    add_positive_number(command, "--seconds", "At most, for each kind, contender and round (default 1)", 3600,
+                        [&bench](double seconds) { bench.seconds = seconds; });
+    add_text(command, "--csv", "Add the rows to this table", bench.csv);
+    add_json(command, bench.json);
+    command.footer(
+        "\nExamples:\n"
+        "  fase bench queries --scene static --contender wide_bvh,embree\n"
+        "  fase bench queries --scene level --mesh building.obj --json\n"
+        "\nAll take turns in one run, so that a noisy machine is noisy for all; processor time counts. In the scene\n"
+        "pile all boxes move in each frame, and following them counts. Before it is timed, each answer is held\n"
+        "against ours, and a part of ours against brute force.\n"
+        "Exit code 1: a structure of ours gave another answer.");
+    start.on(command, [&bench] { return run_bench_queries(bench); });
+}
+
+}  // namespace fase::cli

@@ -1,0 +1,121 @@
+/// The command `fase bench sudden`: the worst frames of broad phases when much changes at once.
+#include "cli/bench/sudden.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "bench/table_file.hpp"
+#include "cli/common/arguments.hpp"
+#include "cli/common/interrupt.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/progress.hpp"
+#include "cli/common/start.hpp"
+#include "cli/common/table.hpp"
+#include "fase/broad/any_structure.hpp"
+#include "fase/scene/detail/json.hpp"
+
+namespace fase::cli {
+namespace {
+
+using bench::SuddenRow;
+
+std::string to_json(const std::vector<SuddenRow>& rows) {
+    std::string text = "[";
+    for (const SuddenRow& row : rows)
+        text += fmt::format(
+            "{}\n{{\"event\": {}, \"structure\": {}, \"boxes\": {}, \"frames\": {}, \"checked\": {}, \"build_ms\": "
+            "{:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": {:.6g}}}, \"worst_frame\": {}, "
+            "\"pairs\": {}}}",
+            text.size() == 1 ? "" : ",", scene::quoted(row.event), scene::quoted(row.structure), row.boxes, row.frames,
+            row.right, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.worst_frame, row.pairs);
+    return text + "\n]\n";
+}
+
+std::string to_table(const std::vector<SuddenRow>& rows) {
+    Table table(
+        {"event", "structure", "median ms", "mean ms", "worst ms", "in frame", "worst / mean", "build ms", "pairs"});
+    std::string text;
+    for (const SuddenRow& row : rows) {
+        if (!row.right) {
+            table.add_note(row.event + " " + row.structure, "WRONG: other pairs than a plain sweep");
+            continue;
+        }
+        table.add({row.event, row.structure, fmt::format("{:.3f}", row.ms.median), fmt::format("{:.3f}", row.ms.mean),
+                   fmt::format("{:.3f}", row.ms.worst), std::to_string(row.worst_frame),
+                   fmt::format("{:.2f}", row.ms.worst / row.ms.mean), fmt::format("{:.2f}", row.build_ms),
+                   std::to_string(row.pairs)});
+        const std::string about = row.event + ": " + row.about + "\n";
+        if (text.find(about) == std::string::npos) text += about;
+    }
+    return table.text() + text;
+}
+
+Result<void> save(const std::string& file, const std::vector<SuddenRow>& rows) {
+    const bench::Origin origin = bench::origin_of_figures();
+    std::vector<std::vector<std::string>> lines;
+    for (const SuddenRow& row : rows)
+        if (row.right)
+            lines.push_back({origin.date, origin.commit, origin.machine, row.event, row.structure,
+                             std::to_string(row.boxes), std::to_string(row.frames),
+                             fmt::format("{:.4f}", row.ms.median), fmt::format("{:.4f}", row.ms.mean),
+                             fmt::format("{:.4f}", row.ms.worst), std::to_string(row.worst_frame),
+                             fmt::format("{:.4f}", row.build_ms), std::to_string(row.pairs)});
+    static const std::vector<std::string> columns{"date",        "commit",   "machine",   "event",   "structure",
+                                                  "boxes",       "frames",   "median_ms", "mean_ms", "worst_ms",
+                                                  "worst_frame", "build_ms", "pairs"};
+    return lines.empty() ? Result<void>{} : bench::append_to_table(file, columns, lines);
+}
+
+}  // namespace
+
+int run_bench_sudden(const BenchSuddenOptions& options) {
+    if (!options.csv.empty()) {
+        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+    }
+    const Interrupts interrupts;
+    std::optional<Progress> progress;
+    std::string begun;
+    const auto tell = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
+        if (begun != what) {
+            progress.emplace(progress_form(true), "frame", total);
+            begun = what;
+        }
+        if (progress->due()) progress->update(done, what);
+        return Interrupts::signal() == 0;
+    };
+    const auto rows = bench::measure_sudden(options, tell);
+    progress.reset();
+    if (!rows) return refuse(rows.error());
+    if (!options.csv.empty()) {
+        if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
+    }
+    const std::string text = options.json ? to_json(*rows) : to_table(*rows);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
+    const bool all_right = std::all_of(rows->begin(), rows->end(), [](const SuddenRow& row) { return row.right; });
+    return all_right ? exit_ok : exit_check_failed;
+}
+
+void add_bench_sudden(CLI::App& bench_group, Start& start) {
+    auto& bench = start.options<BenchSuddenOptions>();
+    CLI::App& command = *bench_group.add_subcommand("sudden", "Time frames in which much changes at once");
+    add_text(command, "--structure",
+             "Some of auto, " + broad::AnyStructure::names() + ", commas between (default: " + bench.structures + ")",
+             bench.structures);
+    add_count(command, "Boxes (default 100,000)", bench.boxes);
+    add_whole_number(command, "--frames", "Frames of each event (default 60)", 2, 100000, bench.frames);
+    add_text(command, "--csv", "Add the rows to this table", bench.csv);
+    add_json(command, bench.json);
+    command.footer(
+        "\nExamples:\n"
+        "  fase bench sudden\n"
+        "  fase bench sudden --structure auto --count 1000000\n"
+        "\nA frame's time is what the processor works to take its boxes and to find all its pairs, with one thread.\n"
+        "Exit code 1: a structure found other pairs than a plain sweep did, in a frame in the middle or at the end.");
+    start.on(command, [&bench] { return run_bench_sudden(bench); });
+}
+
+}  // namespace fase::cli

@@ -1,0 +1,137 @@
+/// What every command shares in talking to the outside: exit codes, error lines, text that is safe to show, output
+/// files.
+#include "cli/common/output.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace fase::cli {
+namespace {
+
+/// Bytes of the well-formed UTF-8 sequence of a printable character that `text` begins with; else 0 (RFC 3629).
+std::size_t printable_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(0);
+    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+    const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    if (length == 0 || text.size() < length) return 0;
+    std::uint32_t code = first & (0xffu >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+        code = code << 6 | (byte(i) & 0x3fu);
+    }
+    const bool overlong = code < (length == 2 ? 0x80u : length == 3 ? 0x800u : 0x10000u);
+    const bool control = code < 0xa0 || code == 0x2028 || code == 0x2029;
+    const bool turns_direction = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+    const bool none = code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
+    return overlong || control || turns_direction || none ? 0 : length;
+}
+
+Error cannot_write(const std::string& path, std::string problem) { return {Status::Io, path, std::move(problem), {}}; }
+
+}  // namespace
+
+int exit_code(Status status) {
+    switch (status) {
+        case Status::Ok: return exit_ok;
+        case Status::BadArgument:
+        case Status::BadHandle:
+        case Status::OutOfRange:
+        case Status::Format:
+        case Status::Unsupported: return exit_bad_input;
+        case Status::Io:
+        case Status::Busy: return exit_io;
+        case Status::Capacity:
+        case Status::NoMemory: return exit_limit;
+    }
+    return exit_bug;
+}
+
+std::string printable(std::string_view text, std::size_t most) {
+    std::string out;
+    std::size_t i = 0;
+    while (i < text.size() && i < most) {
+        const std::size_t length = printable_length(text.substr(i));
+        if (length > 0) {
+            out += text.substr(i, length);
+        } else if (text[i] == '\n') {
+            out += "\\n";
+        } else if (text[i] == '\t') {
+            out += "\\t";
+        } else {
+            out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
+        }
+        i += std::max<std::size_t>(length, 1);
+    }
+    if (i < text.size()) out += "…";
+    return out;
+}
+
+int refuse(const Error& error) {
+    const std::string line = fmt::format("fase: error: {}\n", printable(error.text()));
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    return exit_code(error.status);
+}
+
+void guard_standard_streams() {
+    for (const int stream : {0, 1, 2}) {
+        // The lowest free number is given out, so the gaps fill in order.
+        if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            (void)::open("/dev/null", stream == 0 ? O_RDONLY : O_WRONLY);
+    }
+    ::signal(SIGPIPE, SIG_IGN);
+}
+
+int finish_output(int code) {
+    errno = 0;
+    const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+    if (!failed) return code;
+    const int cause = errno;
+    pollfd out{1, POLLOUT, 0};
+    const bool nobody_reads = cause == EPIPE || (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0);
+    if (nobody_reads) return 128 + SIGPIPE;
+    const int told = refuse({Status::Io,
+                             "standard output",
+                             std::string("cannot write: ") + (cause != 0 ? std::strerror(cause) : "it failed"),
+                             {}});
+    return code == exit_ok ? told : code;
+}
+
+Result<void> check_output(const std::string& path, const std::string& input) {
+    if (path.empty()) return Error{Status::BadArgument, "output", "found an empty name, need a file", {}};
+    struct stat there {};
+    if (::stat(path.c_str(), &there) == 0) {
+        if (S_ISDIR(there.st_mode)) return cannot_write(path, "found a folder, need a file to write");
+        struct stat source {};
+        if (!input.empty() && ::stat(input.c_str(), &source) == 0 && source.st_dev == there.st_dev &&
+            source.st_ino == there.st_ino) {
+            return cannot_write(path, "found the file that is read, need another one to write");
+        }
+        if (::access(path.c_str(), W_OK) != 0) return cannot_write(path, "found a read-only file, need one to write");
+        if (!S_ISREG(there.st_mode)) return {};
+    } else if (errno == ENAMETOOLONG || errno == ELOOP) {
+        return cannot_write(printable(path, 60), std::string("cannot write: ") + std::strerror(errno));
+    }
+    const std::size_t slash = path.rfind('/');
+    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+    struct stat place {};
+    if (::stat(folder.c_str(), &place) != 0 || !S_ISDIR(place.st_mode)) {
+        return cannot_write(path, "found no folder \"" + folder + "\", need one that exists");
+    }
+    if (path.back() == '/') return cannot_write(path, "found a folder's name, need a file's");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        return cannot_write(path, "found the read-only folder \"" + folder + "\", need one to write to");
+    }
+    return {};
+}
+
+}  // namespace fase::cli

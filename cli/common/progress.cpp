@@ -1,0 +1,75 @@
+/// How far a long command has come: a bar on a terminal, now and then a line elsewhere.
+#include "cli/common/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace fase::cli {
+namespace {
+
+constexpr auto between_bars = std::chrono::milliseconds(100);
+constexpr auto between_lines = std::chrono::seconds(2);
+
+void put(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+std::size_t terminal_width() {
+    winsize size{};
+    return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+ProgressForm progress_form(bool results_only) {
+    const char* terminal = std::getenv("TERM");
+    if (::isatty(2) == 1 && (terminal == nullptr || std::strcmp(terminal, "dumb") != 0)) return ProgressForm::Bar;
+    return results_only ? ProgressForm::None : ProgressForm::Lines;
+}
+
+Progress::Progress(ProgressForm form, std::string_view unit, std::uint64_t total)
+    : form_(form), unit_(unit), total_(std::max<std::uint64_t>(total, 1)), begin_(Clock::now()) {
+    next_ = begin_ + (form == ProgressForm::Bar ? Clock::duration(between_bars) : Clock::duration(between_lines));
+}
+
+Progress::~Progress() {
+    if (drawn_) put("\r\x1b[K");
+}
+
+bool Progress::due() const { return form_ != ProgressForm::None && Clock::now() >= next_; }
+
+void Progress::update(std::uint64_t done, std::string_view note) {
+    if (!due()) return;
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - begin_).count();
+    if (form_ == ProgressForm::Bar) {
+        next_ = now + between_bars;
+        draw_bar(done, note, seconds);
+    } else {
+        next_ = now + between_lines;
+        put(fmt::format("{} {} of {} after {:.0f} s{}{}\n", unit_, done, total_, seconds, note.empty() ? "" : ", ",
+                        note));
+    }
+}
+
+void Progress::draw_bar(std::uint64_t done, std::string_view note, double seconds) {
+    constexpr std::size_t cells = 24;
+    const double part = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+    const auto full = static_cast<std::size_t>(part * cells);
+    std::string line = fmt::format("[{}{}] {:3.0f} %  {} {}/{}", std::string(full, '#'), std::string(cells - full, '.'),
+                                   100 * part, unit_, done, total_);
+    if (!note.empty()) line += fmt::format("  {}", note);
+    if (done > 0) line += fmt::format("  {:.0f} s left", seconds / part * (1 - part));
+    if (line.size() >= terminal_width()) line.resize(terminal_width() - 1);  // ASCII only, so any cut is good
+    put("\r" + line + "\x1b[K");
+    drawn_ = true;
+}
+
+}  // namespace fase::cli

@@ -1,0 +1,190 @@
+/// The tree of planes over a mesh, for the command `fase level`.
+#include "cli/level/mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include "cli/common/output.hpp"
+#include "fase/core/random.hpp"
+#include "fase/level/polygon_bsp.hpp"
+#include "fase/scene/detail/json.hpp"
+#include "fase/scene/gltf.hpp"
+#include "fase/scene/obj.hpp"
+
+namespace fase::cli {
+namespace {
+
+bool ends_with(const std::string& text, std::string_view ending) {
+    if (text.size() < ending.size()) return false;
+    return std::equal(
+        ending.begin(), ending.end(), text.end() - static_cast<std::ptrdiff_t>(ending.size()),
+        [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b); });
+}
+
+/// All that a glTF scene shows, in its place.
+TriangleMesh mesh_of(const scene::Scene& scene) {
+    TriangleMesh all;
+    const auto add = [&](const scene::Visual& visual, const Pose& body) {
+        const scene::Mesh& mesh = scene.meshes[visual.mesh];
+        const auto first = static_cast<std::uint32_t>(all.positions.size());
+        for (const Vec3& p : mesh.positions) {
+            const Vec3 in_body = visual.linear * p + visual.position;
+            all.positions.push_back(to_float(body.position + to_double(rotate(body.rotation, in_body))));
+        }
+        const bool turned = determinant(visual.linear) < 0;
+        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+            const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
+            all.indices.insert(all.indices.end(), {first + a, first + (turned ? c : b), first + (turned ? b : c)});
+        }
+    };
+    for (const scene::Body& body : scene.bodies)
+        for (const scene::Visual& visual : body.visuals) add(visual, {body.def.position, body.def.rotation});
+    for (const scene::Visual& visual : scene.scenery) add(visual, {});
+    return all;
+}
+
+Result<TriangleMesh> read_mesh(const std::string& file) {
+    if (ends_with(file, ".obj")) return scene::read_obj(file);
+    const Result<scene::Scene> scene = scene::read_gltf(file);
+    if (!scene) return scene.error();
+    return mesh_of(*scene);
+}
+
+Result<std::optional<Vec3d>> point_of(const std::string& text) {
+    if (text.empty()) return std::optional<Vec3d>();
+    Vec3d point;
+    const char* at = text.data();
+    const char* end = at + text.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [stop, code] = std::from_chars(at, end, point[axis]);
+        const bool good = code == std::errc{} && (axis < 2 ? stop != end && *stop == ',' : stop == end);
+        if (!good || !(std::abs(point[axis]) <= 1e9)) {
+            return Error{Status::BadArgument,
+                         "--point",
+                         fmt::format("found \"{}\", need X,Y,Z, three numbers within 1e9", printable(text, 60)),
+                         {}};
+        }
+        at = stop + 1;
+    }
+    return std::optional(point);
+}
+
+/// Rays through the tree, all at once, and how many of them meet something else than the judge says.
+struct Rays {
+    std::uint64_t cast = 0, met = 0, checked = 0, wrong = 0;
+    double ms = 0;
+};
+
+Rays cast_rays(const level::PolygonBsp& tree, std::uint64_t count, TaskRunner& tasks) {
+    constexpr std::uint64_t max_tests = 400'000'000;  // triangles that the judge may ask
+    Vec3d lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+    for (const std::uint32_t i : tree.mesh().indices) {
+        lo = min(lo, to_double(tree.mesh().positions[i]));
+        hi = max(hi, to_double(tree.mesh().positions[i]));
+    }
+    const Vec3d more = (hi - lo) * 0.1;
+    std::vector<Ray> rays(count);
+    Random random(1);
+    const auto place = [&] {
+        const Vec3d p = lo - more, q = hi + more;
+        return Vec3d{p.x + (q.x - p.x) * double(random.unit()), p.y + (q.y - p.y) * double(random.unit()),
+                     p.z + (q.z - p.z) * double(random.unit())};
+    };
+    for (Ray& ray : rays) {
+        ray.origin = place();
+        ray.direction = normalized(to_float(place() - ray.origin));
+    }
+    std::vector<std::optional<level::PolygonHit>> hits(count);
+    const auto start = std::chrono::steady_clock::now();
+    parallel_ranges(tasks, count, 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = tree.cast_ray(rays[i]);
+    });
+    Rays result;
+    result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.cast = count;
+    for (const auto& hit : hits) result.met += hit ? 1 : 0;
+    result.checked = std::min<std::uint64_t>(count, std::max<std::uint64_t>(1, max_tests / tree.stats().triangles));
+    std::atomic<std::uint64_t> wrong = 0;
+    parallel_ranges(tasks, result.checked, 64, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            sum += hits[i] != level::cast_ray_at_all(tree.mesh(), rays[i]) ? 1 : 0;
+        wrong += sum;
+    });
+    result.wrong = wrong;
+    return result;
+}
+
+std::string text_of(const level::PolygonBspStats& s, double ms) {
+    return fmt::format(
+        "{} triangles ({} without surface), {} pieces ({} cuts), {} nodes, {} leaves: {} solid, {} empty{}\n"
+        "depth {:.2f} mean, {} worst; {} bytes; {:.1f} ms; {}\n",
+        s.triangles, s.dropped, s.pieces, s.splits, s.nodes, s.leaves, s.solid, s.empty,
+        s.mixed == 0 ? "" : fmt::format(", {} mixed", s.mixed), s.mean_depth, s.worst_depth, s.bytes, ms,
+        s.closed ? "closed" : "not closed: solid is what the mesh goes around more than half");
+}
+
+Result<int> work_on(const LevelMeshCommand& command) {
+    const Result<std::optional<Vec3d>> point = point_of(command.point);
+    if (!point) return point.error();
+    Result<TriangleMesh> mesh = read_mesh(command.file);
+    if (!mesh) return mesh.error();
+    const auto tasks = make_thread_runner(command.threads);
+    const auto start = std::chrono::steady_clock::now();
+    const Result<level::PolygonBsp> tree = level::PolygonBsp::build(*std::move(mesh), {.tasks = tasks.get()});
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (!tree) {
+        Error error = tree.error();
+        error.where = command.file + ": " + error.where;
+        return error;
+    }
+    const level::PolygonBspStats& s = tree->stats();
+    std::optional<Rays> rays;
+    if (command.rays > 0) rays = cast_rays(*tree, command.rays, *tasks);
+    std::string text;
+    if (command.json) {
+        text = fmt::format(
+            "{{\"mesh\": {}, \"triangles\": {}, \"dropped\": {}, \"pieces\": {}, \"splits\": {}, \"nodes\": {}, "
+            "\"leaves\": {}, \"solid\": {}, \"empty\": {}, \"mixed\": {}, \"mean_depth\": {:.6g}, \"worst_depth\": {}, "
+            "\"closed\": {}, \"bytes\": {}, \"ms\": {:.3f}",
+            scene::quoted(command.file), s.triangles, s.dropped, s.pieces, s.splits, s.nodes, s.leaves, s.solid,
+            s.empty, s.mixed, s.mean_depth, s.worst_depth, s.closed, s.bytes, ms);
+        if (*point) text += fmt::format(", \"point_solid\": {}", tree->solid(**point));
+        if (rays)
+            text +=
+                fmt::format(", \"rays\": {{\"cast\": {}, \"met\": {}, \"checked\": {}, \"wrong\": {}, \"ms\": {:.3f}}}",
+                            rays->cast, rays->met, rays->checked, rays->wrong, rays->ms);
+        text += "}\n";
+    } else {
+        text = text_of(s, ms);
+        if (*point)
+            text += fmt::format("({:g}, {:g}, {:g}) is {}\n", (*point)->x, (*point)->y, (*point)->z,
+                                tree->solid(**point) ? "solid" : "empty");
+        if (rays)
+            text += fmt::format("{} rays, {} met something, {:.1f} ms; {} held against all triangles: {} wrong\n",
+                                rays->cast, rays->met, rays->ms, rays->checked, rays->wrong);
+    }
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return rays && rays->wrong > 0 ? exit_check_failed : exit_ok;
+}
+
+}  // namespace
+
+bool is_mesh_name(const std::string& file) {
+    return ends_with(file, ".obj") || ends_with(file, ".gltf") || ends_with(file, ".glb");
+}
+
+int run_level_mesh(const LevelMeshCommand& command) {
+    const Result<int> code = work_on(command);
+    return code ? *code : refuse(code.error());
+}
+
+}  // namespace fase::cli

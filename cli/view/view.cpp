@@ -1,0 +1,126 @@
+/// Opens a recording and shows it the way that was asked for.
+#include "cli/view/view.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "cli/common/arguments.hpp"
+#include "cli/common/output.hpp"
+#include "cli/common/start.hpp"
+#include "cli/view/page.hpp"
+#include "cli/view/server.hpp"
+#include "fase/core/detail/files.hpp"
+#include "fase/record/glb_export.hpp"
+#include "fase/record/player.hpp"
+#include "fase/record/recording/input_file.hpp"
+
+namespace fase::cli {
+namespace {
+
+void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", printable(text)); }
+
+/// Whether all that is to be written can be, beside the file that is read.
+Result<void> check_outputs(const ViewOptions& options, const std::string& input) {
+    for (const std::string* out : {&options.html, &options.glb}) {
+        if (out->empty()) continue;
+        if (Result<void> checked = check_output(*out, input); !checked) return checked;
+    }
+    return {};
+}
+
+/// The bytes of a recording as far as they are good.
+Result<std::vector<std::byte>> good_bytes(const record::Player& player) {
+    const Result<record::InputFile> file = record::InputFile::open(player.path());
+    if (!file) return file.error();
+    std::vector<std::byte> bytes(player.good_bytes());
+    if (Result<void> read = (*file).read(0, bytes); !read) return read.error();
+    return bytes;
+}
+
+Result<void> write_page(const record::Player& player, const std::string& name) {
+    const Result<std::vector<std::byte>> recording = good_bytes(player);
+    if (!recording) return recording.error();
+    const Result<std::string> page = self_contained_page(*recording);
+    if (!page) return page.error();
+    return write_file(name, std::as_bytes(std::span(*page)));
+}
+
+Result<void> write_glb(record::Player& player, const std::string& name) {
+    const Result<std::vector<std::byte>> glb = record::export_glb(player);
+    if (!glb) return glb.error();
+    return write_file(name, *glb);
+}
+
+/// Until a signal comes: its number.
+int wait_for_signal(const sigset_t& signals) {
+    int signal = 0;
+    while (sigwait(&signals, &signal) != 0) {
+    }
+    return signal;
+}
+
+int serve(const record::Player& player, const ViewOptions& options) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    Result<ViewServer> server = ViewServer::listen(options.file, options.port);
+    if (!server) return refuse(server.error());
+    std::thread answering([&] { (*server).run(); });
+    fmt::print("{}: {} frames, {} bodies\nhttp://127.0.0.1:{}/   (Ctrl-C ends)\n", printable(player.path()),
+               player.frames(), player.tables().bodies.size(), (*server).port());
+    std::fflush(stdout);
+    const int signal = wait_for_signal(signals);
+    (*server).stop();
+    answering.join();
+    return 128 + signal;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+    if (Result<void> checked = check_outputs(options, options.file); !checked) return refuse(checked.error());
+    Result<record::Player> player = record::Player::open(options.file);
+    if (!player) return refuse(player.error());
+    if (!(*player).lost().empty()) warn((*player).path() + ": " + (*player).lost());
+    std::error_code ignored;
+    if ((*player).path() == options.file && std::filesystem::exists(options.file + ".part", ignored)) {
+        warn(options.file + ".part: stands beside it, of a recording that is running or was never finished");
+    }
+    if (Result<void> checked = check_outputs(options, (*player).path()); !checked) return refuse(checked.error());
+    if (!options.html.empty()) {
+        if (Result<void> written = write_page(*player, options.html); !written) return refuse(written.error());
+        fmt::print("{}\n", printable(options.html));
+    }
+    if (!options.glb.empty()) {
+        if (Result<void> written = write_glb(*player, options.glb); !written) return refuse(written.error());
+        fmt::print("{}\n", printable(options.glb));
+    }
+    if (!options.html.empty() || !options.glb.empty()) return exit_ok;
+    return serve(*player, options);
+}
+
+void add_view(CLI::App& app, Start& start) {
+    auto& view = start.options<ViewOptions>();
+    CLI::App& command = *app.add_subcommand("view", "Show a recording in the browser");
+    add_text(command, "FILE", "A recording of 'fase run --record'", view.file)->required();
+    add_text(command, "--html", "Write one self-contained page instead of serving", view.html);
+    add_text(command, "--glb", "Write the motion as a glTF animation instead of serving", view.glb);
+    add_whole_number(command, "--port", "Serve on 127.0.0.1:N (default: any free one)", 0, 65535, view.port);
+    command.footer(
+        "\nExamples:\n"
+        "  fase view castle.faserec\n"
+        "  fase view castle.faserec --html castle.html\n"
+        "  fase view castle.faserec --glb castle_animation.glb");
+    start.on(command, [&view] { return run_view(view); });
+}
+
+}  // namespace fase::cli

@@ -1,0 +1,104 @@
+/// The cut of least surface, sought more thoroughly than a moving tree can afford.
+#include "fase/broad/builders/area_split.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace fase::broad {
+namespace {
+
+constexpr std::size_t few = 32, bin_count = 32;
+
+/// The items on one side of a cut, or in one bin.
+struct Side {
+    Aabb box;
+    std::size_t count = 0;
+    void add(const Aabb& more, std::size_t how_many) {
+        box = merge(box, more);
+        count += how_many;
+    }
+    [[nodiscard]] float cost() const { return static_cast<float>(count) * box_cost(box); }
+};
+
+struct Best {
+    float cost = Aabb::infinity;
+    int axis = -1;
+    std::size_t cut = 0;  // items, or bins, that go to the left
+    Split split;
+};
+
+constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
+
+/// Tries the cuts between neighbours of a row of sides.
+void try_cuts(std::span<const Side> row, int axis, Best& best) {
+    std::array<Side, std::max(few, bin_count)> right;  // right[i]: row[i] and later
+    Side sum;
+    for (std::size_t i = row.size(); i-- > 0;) {
+        sum.add(row[i].box, row[i].count);
+        right[i] = sum;
+    }
+    sum = {};
+    for (std::size_t cut = 1; cut < row.size(); ++cut) {
+        sum.add(row[cut - 1].box, row[cut - 1].count);
+        if (sum.count == 0 || right[cut].count == 0) continue;
+        const float cost = sum.cost() + right[cut].cost();
+        if (cost < best.cost) best = {cost, axis, cut, {sum.count, sum.box, right[cut].box}};
+    }
+}
+
+Split split_few(std::span<BuildItem> items) {
+    std::array<std::uint8_t, few> order, best_order;
+    std::array<Side, few> row;
+    Best best;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            const float mine = doubled_centre(items[i].box, axis);
+            std::size_t k = i;
+            for (; k > 0 && doubled_centre(items[order[k - 1]].box, axis) > mine; --k) order[k] = order[k - 1];
+            order[k] = static_cast<std::uint8_t>(i);
+        }
+        for (std::size_t i = 0; i < items.size(); ++i) row[i] = {items[order[i]].box, 1};
+        try_cuts(std::span(row).first(items.size()), axis, best);
+        if (best.axis == axis) best_order = order;
+    }
+    std::array<BuildItem, few> sorted;
+    for (std::size_t i = 0; i < items.size(); ++i) sorted[i] = items[best_order[i]];
+    std::copy_n(sorted.begin(), items.size(), items.begin());
+    return best.split;
+}
+
+}  // namespace
+
+Split split_by_area(std::span<BuildItem> items) {
+    if (items.size() <= few) return split_few(items);
+    Aabb centres;
+    for (const BuildItem& item : items) {
+        const Vec3 c = item.box.lo + item.box.hi;
+        centres = merge(centres, {c, c});
+    }
+    const Vec3 e = extent(centres);
+    Vec3 bins_per_metre;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float scale = static_cast<float>(bin_count) / e[axis];
+        bins_per_metre[axis] = scale < Aabb::infinity ? scale : 0;
+    }
+    const auto bin_of = [&](const Aabb& box, int axis) {
+        const float at = (doubled_centre(box, axis) - centres.lo[axis]) * bins_per_metre[axis];
+        return std::min(static_cast<std::size_t>(at), bin_count - 1);
+    };
+    std::array<std::array<Side, bin_count>, 3> bins;
+    for (const BuildItem& item : items) {
+        for (int axis = 0; axis < 3; ++axis)
+            bins[static_cast<std::size_t>(axis)][bin_of(item.box, axis)].add(item.box, 1);
+    }
+    Best best;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (bins_per_metre[axis] > 0) try_cuts(bins[static_cast<std::size_t>(axis)], axis, best);
+    }
+    if (best.axis < 0) return split_by_binned_area(items);  // all centres in one place
+    std::partition(items.begin(), items.end(),
+                   [&](const BuildItem& item) { return bin_of(item.box, best.axis) < best.cut; });
+    return best.split;
+}
+
+}  // namespace fase::broad

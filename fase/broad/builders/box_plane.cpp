@@ -1,0 +1,48 @@
+/// How planes across an axis cut boxes.
+#include "fase/broad/builders/box_plane.hpp"
+
+#include <algorithm>
+
+namespace fase::broad {
+
+PlaneCut cut_of(const BoxPlane& plane, std::span<const Move> boxes) {
+    PlaneCut cut;
+    for (const Move& m : boxes) cut.count(side_of(plane, m.box));
+    return cut;
+}
+
+float ranked(std::vector<float>& values, std::size_t k) {
+    const auto kth = values.begin() + static_cast<std::ptrdiff_t>(k);
+    std::nth_element(values.begin(), kth, values.end());
+    return *kth;
+}
+
+std::optional<BoxPlane> halving_plane(std::span<const Move> boxes, std::vector<float>& scratch) {
+    std::optional<BoxPlane> best;
+    if (boxes.size() < 2) return best;
+    std::size_t together = boxes.size() - std::max<std::size_t>(1, boxes.size() / 8) + 1;  // to be fallen short of
+    const auto try_at = [&](int axis, float at) {
+        const std::size_t largest = cut_of({axis, at}, boxes).largest();
+        if (largest >= together) return;
+        together = largest;
+        best = {axis, at};
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const bool upper : {true, false}) {
+            scratch.clear();
+            for (const Move& m : boxes) scratch.push_back(upper ? m.box.hi[axis] : m.box.lo[axis]);
+            const float middle = ranked(scratch, boxes.size() / 2);
+            // Where many faces are at `middle`, the plane must go through the next face, or all stay together.
+            float next = upper ? -Aabb::infinity : Aabb::infinity;
+            for (const float face : scratch) {
+                if (upper && face < middle) next = std::max(next, face);
+                if (!upper && face > middle) next = std::min(next, face);
+            }
+            try_at(axis, middle);
+            if (next > -Aabb::infinity && next < Aabb::infinity) try_at(axis, next);
+        }
+    }
+    return best;
+}
+
+}  // namespace fase::broad

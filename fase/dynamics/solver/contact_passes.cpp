@@ -1,0 +1,39 @@
+/// Compiles the passes for every SIMD target and picks one at run time.
+// Vectors of unknown size cannot be members; such targets fall back to 128 bits.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fase/dynamics/solver/contact_passes.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+#include "fase/dynamics/solver/contact_passes.hpp"
+#include "fase/math/detail/lane.hpp"
+#include "fase/math/detail/wide-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fase::dynamics::HWY_NAMESPACE {
+using fase::HWY_NAMESPACE::Wide;
+#include "fase/dynamics/solver/contact_passes-inl.hpp"
+
+void run_wide(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
+    run_blocks<Wide>(pass, blocks, count, one_sided, input);
+}
+}  // namespace fase::dynamics::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fase::dynamics {
+namespace reference {
+#include "fase/dynamics/solver/contact_passes-inl.hpp"
+}  // namespace reference
+
+HWY_EXPORT(run_wide);
+void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
+    HWY_DYNAMIC_DISPATCH(run_wide)(pass, blocks, count, one_sided, input);
+}
+void run_pass_reference(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
+    reference::run_blocks<Lane>(pass, blocks, count, one_sided, input);
+}
+}  // namespace fase::dynamics
+#endif

@@ -1,0 +1,111 @@
+/// SIMD lanes: the one place that knows Highway. Included once for each target inside its namespace (see
+/// dynamics/solver/contact_passes.cpp), so no #pragma once.
+#if defined(FASE_MATH_WIDE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef FASE_MATH_WIDE_INL_HPP
+#undef FASE_MATH_WIDE_INL_HPP
+#else
+#define FASE_MATH_WIDE_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "fase/math/detail/lane.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fase::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+using Wide = fase::Lane;  // a processor without SIMD that Highway knows
+#else
+/// Four or eight floats that are computed at once; add, subtract, multiply, divide and sqrt round as scalars do and
+/// nothing is fused, so every width gives the same bits.
+struct Wide {
+    using Tag = hn::CappedTag<float, 8>;
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
+    static_assert(lanes == 4 || lanes == 8);
+    hn::Vec<Tag> v;
+
+    static HWY_INLINE Wide load(const float* p) { return {hn::LoadU(Tag(), p)}; }
+    static HWY_INLINE Wide set(float value) { return {hn::Set(Tag(), value)}; }
+    HWY_INLINE void store(float* p) const { hn::StoreU(v, Tag(), p); }
+    friend HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.v, b.v)}; }
+    friend HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.v, b.v)}; }
+    friend HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.v, b.v)}; }
+    friend HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.v, b.v)}; }
+    friend HWY_INLINE Wide sqrt_of(Wide a) { return {hn::Sqrt(a.v)}; }
+    /// a > b ? x : y, lane by lane; false for NaN.
+    friend HWY_INLINE Wide select_greater(Wide a, Wide b, Wide x, Wide y) {
+        return {hn::IfThenElse(hn::Gt(a.v, b.v), x.v, y.v)};
+    }
+
+    /// Reads 8 floats from each of `lanes` rows and turns them, so that out[k] holds float k of every row. Rows are 16
+    /// bytes aligned; `stride` is in floats.
+    static HWY_INLINE void gather8(const float* base, const std::uint32_t* rows, std::size_t stride, Wide* out) {
+        const Tag d;
+        hn::Vec<Tag> z[8];
+        if constexpr (lanes == 8) {
+            for (int i = 0; i < 8; ++i) z[i] = hn::LoadU(d, base + rows[i] * stride);
+            transpose4(z);
+            transpose4(z + 4);
+            for (int i = 0; i < 4; ++i) {
+                out[i].v = hn::ConcatLowerLower(d, z[4 + i], z[i]);
+                out[4 + i].v = hn::ConcatUpperUpper(d, z[4 + i], z[i]);
+            }
+        } else {
+            for (int i = 0; i < 4; ++i) {
+                z[i] = hn::LoadU(d, base + rows[i] * stride);
+                z[4 + i] = hn::LoadU(d, base + rows[i] * stride + 4);
+            }
+            transpose4(z);
+            transpose4(z + 4);
+            for (int i = 0; i < 8; ++i) out[i].v = z[i];
+        }
+    }
+    /// The reverse of gather8(): all rows must differ, but for rows that nobody reads.
+    static HWY_INLINE void scatter8(float* base, const std::uint32_t* rows, std::size_t stride, const Wide* in) {
+        const Tag d;
+        hn::Vec<Tag> z[8];
+        if constexpr (lanes == 8) {
+            for (int i = 0; i < 4; ++i) {
+                z[i] = hn::ConcatLowerLower(d, in[4 + i].v, in[i].v);
+                z[4 + i] = hn::ConcatUpperUpper(d, in[4 + i].v, in[i].v);
+            }
+            transpose4(z);
+            transpose4(z + 4);
+            for (int i = 0; i < 8; ++i) hn::StoreU(z[i], d, base + rows[i] * stride);
+        } else {
+            for (int i = 0; i < 8; ++i) z[i] = in[i].v;
+            transpose4(z);
+            transpose4(z + 4);
+            for (int i = 0; i < 4; ++i) {
+                hn::StoreU(z[i], d, base + rows[i] * stride);
+                hn::StoreU(z[4 + i], d, base + rows[i] * stride + 4);
+            }
+        }
+    }
+
+private:
+    /// Four rows of four lanes, within each 128-bit part.
+    static HWY_INLINE void transpose4(hn::Vec<Tag>* z) {
+        const Tag d;
+        const hn::Repartition<double, Tag> dd;
+        const auto a = hn::BitCast(dd, hn::InterleaveLower(d, z[0], z[1]));
+        const auto b = hn::BitCast(dd, hn::InterleaveUpper(d, z[0], z[1]));
+        const auto c = hn::BitCast(dd, hn::InterleaveLower(d, z[2], z[3]));
+        const auto e = hn::BitCast(dd, hn::InterleaveUpper(d, z[2], z[3]));
+        z[0] = hn::BitCast(d, hn::InterleaveLower(dd, a, c));
+        z[1] = hn::BitCast(d, hn::InterleaveUpper(dd, a, c));
+        z[2] = hn::BitCast(d, hn::InterleaveLower(dd, b, e));
+        z[3] = hn::BitCast(d, hn::InterleaveUpper(dd, b, e));
+    }
+};
+#endif
+
+}  // namespace fase::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,253 @@
+/// The distance of two convex cores (GJK).
+#include "fase/narrow/detail/gjk.hpp"
+
+#include <optional>
+
+namespace fase::narrow {
+namespace {
+
+/// How much each corner counts in the point of a simplex that is closest to the origin, and that point.
+struct Closest {
+    std::array<double, 4> weight{};
+    Vec3d point;
+    double squared = std::numeric_limits<double>::infinity();
+};
+
+class ClosestPoint {
+public:
+    explicit ClosestPoint(const Simplex& simplex) : simplex_(simplex) {}
+
+    [[nodiscard]] Closest find() const {
+        switch (simplex_.count) {
+            case 1: return vertex(0);
+            case 2: return segment(0, 1);
+            case 3: return triangle(0, 1, 2);
+            default: return tetrahedron();
+        }
+    }
+
+private:
+    [[nodiscard]] Vec3d at(std::size_t i) const { return simplex_.corners[i].difference; }
+
+    [[nodiscard]] Closest vertex(std::size_t i) const {
+        Closest result;
+        result.weight[i] = 1;
+        result.point = at(i);
+        result.squared = length_squared(result.point);
+        return result;
+    }
+
+    [[nodiscard]] Closest segment(std::size_t i, std::size_t j) const {
+        const Vec3d p = at(i), q = at(j), along = q - p;
+        const double squared = length_squared(along);
+        const double from_p = -dot(p, along), from_q = dot(q, along);
+        if (!(from_p > 0) || !(squared > 0)) return vertex(i);
+        if (!(from_q > 0)) return vertex(j);
+        Closest result;
+        // Measured from the nearer end, so that little is lost on long segments.
+        if (from_p < from_q) {
+            const double share = from_p / squared;
+            result.weight[i] = 1 - share;
+            result.weight[j] = share;
+            result.point = p + along * share;
+        } else {
+            const double share = from_q / squared;
+            result.weight[i] = share;
+            result.weight[j] = 1 - share;
+            result.point = q - along * share;
+        }
+        result.squared = length_squared(result.point);
+        return result;
+    }
+
+    [[nodiscard]] static const Closest& nearer(const Closest& a, const Closest& b) {
+        return b.squared < a.squared ? b : a;
+    }
+
+    [[nodiscard]] Closest triangle(std::size_t i, std::size_t j, std::size_t k) const {
+        const Vec3d p = at(i), q = at(j), r = at(k);
+        const Vec3d normal = cross(q - p, r - p);
+        const double squared = length_squared(normal);
+        const double edges = length_squared(q - p) * length_squared(r - p);
+        if (!(squared > 1e-30 * edges)) return nearer(nearer(segment(i, j), segment(i, k)), segment(j, k));
+        // The origin's foot on the plane, seen along the axis in which the triangle's shadow is largest.
+        const Vec3d foot = normal * (dot(normal, p) / squared);
+        const Vec3d size = abs(normal);
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const int u = axis == 2 ? 0 : axis + 1, v = u == 2 ? 0 : u + 1;
+        const auto area = [&](Vec3d s, Vec3d t) {
+            return (s[u] - foot[u]) * (t[v] - foot[v]) - (s[v] - foot[v]) * (t[u] - foot[u]);
+        };
+        const double whole = normal[axis];
+        const double at_p = area(q, r) / whole, at_q = area(r, p) / whole, at_r = area(p, q) / whole;
+        if (at_p > 0 && at_q > 0 && at_r > 0) {
+            Closest result;
+            const double sum = at_p + at_q + at_r;
+            result.weight[i] = at_p / sum;
+            result.weight[j] = at_q / sum;
+            result.weight[k] = at_r / sum;
+            result.point = foot;
+            result.squared = length_squared(foot);
+            return result;
+        }
+        Closest result;
+        if (!(at_p > 0)) result = segment(j, k);
+        if (!(at_q > 0)) result = nearer(result, segment(i, k));
+        if (!(at_r > 0)) result = nearer(result, segment(i, j));
+        return result;
+    }
+
+    [[nodiscard]] Closest tetrahedron() const {
+        const Vec3d p = at(0), q = at(1), r = at(2), s = at(3);
+        const Vec3d u = q - p, v = r - p, w = s - p;
+        const double volume = dot(u, cross(v, w));
+        const double bound = length_squared(u) * length_squared(v) * length_squared(w);
+        std::array<double, 4> weight{};
+        const bool flat = !(volume * volume > 1e-28 * bound);
+        if (!flat) {
+            // From corner p, not from the origin: far from it the products would lose all their digits.
+            weight[1] = -dot(p, cross(v, w)) / volume;
+            weight[2] = dot(p, cross(u, w)) / volume;
+            weight[3] = -dot(p, cross(u, v)) / volume;
+            weight[0] = 1 - weight[1] - weight[2] - weight[3];
+            if (weight[0] > 0 && weight[1] > 0 && weight[2] > 0 && weight[3] > 0) {
+                Closest inside;
+                const double sum = weight[0] + weight[1] + weight[2] + weight[3];
+                for (double& share : weight) share /= sum;
+                inside.weight = weight;
+                inside.squared = 0;
+                return inside;
+            }
+        }
+        Closest result;
+        if (flat || !(weight[0] > 0)) result = triangle(1, 2, 3);
+        if (flat || !(weight[1] > 0)) result = nearer(result, triangle(0, 2, 3));
+        if (flat || !(weight[2] > 0)) result = nearer(result, triangle(0, 1, 3));
+        if (flat || !(weight[3] > 0)) result = nearer(result, triangle(0, 1, 2));
+        return result;
+    }
+
+    const Simplex& simplex_;
+};
+
+/// Drops the corners that do not carry the closest point, and notes the weights of the others.
+void keep(Simplex& simplex, const Closest& closest) {
+    int kept = 0;
+    for (int i = 0; i < simplex.count; ++i) {
+        const double weight = closest.weight[static_cast<std::size_t>(i)];
+        if (!(weight > 0)) continue;
+        if (kept < i) simplex.corners[static_cast<std::size_t>(kept)] = simplex.corners[static_cast<std::size_t>(i)];
+        simplex.corners[static_cast<std::size_t>(kept++)].weight = weight;
+    }
+    simplex.count = kept;
+}
+
+/// The point that the weights stand for, as one corner.
+SimplexCorner merged(const Simplex& simplex) {
+    SimplexCorner sum;
+    for (int i = 0; i < simplex.count; ++i) {
+        const SimplexCorner& corner = simplex.corners[static_cast<std::size_t>(i)];
+        sum.on_a += corner.on_a * corner.weight;
+        sum.on_b += corner.on_b * corner.weight;
+    }
+    sum.difference = sum.on_a - sum.on_b;
+    sum.weight = 1;
+    return sum;
+}
+
+/// Square of the largest length that went into a corner.
+double size_squared(const SimplexCorner& corner) {
+    const double a = length_squared(corner.on_a), b = length_squared(corner.on_b);
+    const double difference = length_squared(corner.difference), larger = a > b ? a : b;
+    return larger > difference ? larger : difference;
+}
+
+/// Where a round without visible progress began.
+struct Before {
+    Simplex simplex;
+    Vec3d v;
+    double squared = 0, gap = 0;
+};
+
+bool holds(const Simplex& simplex, Vec3d difference) {
+    for (int i = 0; i < simplex.count; ++i) {
+        if (simplex.corners[static_cast<std::size_t>(i)].difference == difference) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, const GjkOptions& options) {
+    constexpr int max_rounds = 128;
+    const auto corner_along = [&](Vec3d direction) {
+        SimplexCorner corner;
+        corner.on_a = a.support(direction);
+        corner.on_b = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, -direction)));
+        corner.difference = corner.on_a - corner.on_b;
+        return corner;
+    };
+    GjkResult result;
+    Simplex& simplex = result.simplex;
+    const Vec3d start = length_squared(b_in_a.position) > 0 ? b_in_a.position : Vec3d{1, 0, 0};
+    simplex.corners[0] = corner_along(start);
+    simplex.corners[0].weight = 1;
+    simplex.count = 1;
+    Vec3d v = simplex.corners[0].difference;
+    double squared = length_squared(v), scale_squared = size_squared(simplex.corners[0]);
+    std::optional<Before> before;
+    bool stalled = false;
+    for (; result.iterations < max_rounds; ++result.iterations) {
+        // Within rounding of the origin.
+        if (squared <= 1e-30 * scale_squared) break;
+        const SimplexCorner corner = corner_along(-v);
+        const double progress = dot(v, corner.difference);  // |v| times a lower bound of the distance
+        if (progress > 0 && progress * progress > options.farther_than * options.farther_than * squared) {
+            result.state = GjkResult::State::Farther;
+            result.distance = progress / std::sqrt(squared);
+            break;
+        }
+        const double size = size_squared(corner);
+        if (size > scale_squared) scale_squared = size;
+        const double gap = squared - progress;
+        if (stalled && !(gap < before->gap)) {
+            simplex = before->simplex;
+            v = before->v;
+            squared = before->squared;
+            break;
+        }
+        if (gap <= options.tolerance * squared || holds(simplex, corner.difference)) break;
+        simplex.corners[static_cast<std::size_t>(simplex.count++)] = corner;
+        const Closest closest = ClosestPoint(simplex).find();
+        // Rounding may eat the progress in length while the direction still gets better: then the gap decides.
+        constexpr double noise = 1e-14;
+        stalled = !(closest.squared < squared * (1 - noise));
+        if (stalled) {
+            --simplex.count;
+            if (!(closest.squared <= squared * (1 + noise))) break;
+            before = Before{simplex, v, squared, gap};
+            ++simplex.count;
+        }
+        keep(simplex, closest);
+        v = closest.point;
+        squared = closest.squared;
+        if (squared == 0) break;
+    }
+    result.scale = std::sqrt(scale_squared);
+    const SimplexCorner closest = merged(simplex);
+    result.on_a = closest.on_a;
+    result.on_b = closest.on_b;
+    if (result.state == GjkResult::State::Farther) {
+        result.normal = normalized(-v);
+        return result;
+    }
+    if (squared <= 1e-30 * scale_squared) {
+        result.state = GjkResult::State::Overlap;
+        return result;
+    }
+    result.distance = std::sqrt(squared);
+    result.normal = v * (-1 / result.distance);
+    return result;
+}
+
+}  // namespace fase::narrow

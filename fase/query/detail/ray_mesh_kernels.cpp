@@ -1,0 +1,32 @@
+/// Compiles the search through triangles for every SIMD target and picks one at run time.
+// Vectors of unknown size cannot be members; such targets fall back to 128 bits.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fase/query/detail/ray_mesh_kernels.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+#include <bit>
+#include <limits>
+
+#include "fase/query/detail/ray_mesh_kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fase::query::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+#include "fase/query/detail/ray_mesh-inl.hpp"
+}  // namespace fase::query::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fase::query {
+
+HWY_EXPORT(cast_at);
+
+Hit cast_at_blocks(const RayMeshView& mesh, const Ray& ray, bool any) {
+    return HWY_DYNAMIC_DISPATCH(cast_at)(mesh, ray, any);
+}
+
+}  // namespace fase::query
+#endif

@@ -1,0 +1,66 @@
+/// Reading on a POSIX system.
+#include "fase/record/recording/input_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "fase/record/recording/output_file.hpp"
+
+namespace fase::record {
+
+Result<InputFile> InputFile::open(const std::string& name) {
+    InputFile file;
+    file.path_ = name;
+    if (name.empty() || name.find('\0') != std::string::npos) {
+        return Error{Status::Io, name, "found no name of a file", {}};
+    }
+    do {
+        file.handle_ = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    } while (file.handle_ < 0 && errno == EINTR);
+    if (file.handle_ < 0) return system_error(name, "cannot open", errno);
+    struct stat about {};
+    if (::fstat(file.handle_, &about) != 0) return system_error(name, "cannot read", errno);
+    if (!S_ISREG(about.st_mode)) {
+        return Error{
+            Status::Io, name, S_ISDIR(about.st_mode) ? "found a folder, need a file" : "found no regular file", {}};
+    }
+    file.size_ = static_cast<std::uint64_t>(about.st_size);
+    return file;
+}
+
+InputFile::InputFile(InputFile&& other) noexcept
+    : handle_(std::exchange(other.handle_, -1)), size_(other.size_), path_(std::move(other.path_)) {}
+InputFile& InputFile::operator=(InputFile&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    std::swap(size_, other.size_);
+    path_.swap(other.path_);
+    return *this;
+}
+InputFile::~InputFile() {
+    if (handle_ >= 0) ::close(handle_);
+}
+
+Result<void> InputFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t answer =
+            ::pread(handle_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+        if (answer > 0) {
+            done += static_cast<std::size_t>(answer);
+        } else if (answer == 0) {
+            return Error{Status::Io,
+                         path_ + ":" + std::to_string(offset + done),
+                         "the file ends here: it was made shorter while it was read",
+                         {}};
+        } else if (errno != EINTR) {
+            return system_error(path_ + ":" + std::to_string(offset + done), "cannot read", errno);
+        }
+    }
+    return {};
+}
+
+}  // namespace fase::record

@@ -1,0 +1,137 @@
+#include "fase/broad/auto_structure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fase/pairs/pair_finder.hpp"
+#include "tests/conformance/scenes.hpp"
+
+namespace fase::broad {
+namespace {
+
+std::vector<Move> row_of(std::size_t count, float every_tenth = 1) {
+    std::vector<Move> boxes;
+    for (Proxy p = 0; p < count; ++p) {
+        const auto x = static_cast<float>(p) * 0.9f;
+        const float size = p % 10 == 0 ? every_tenth : 1;
+        boxes.push_back({p, {{x, 0, 0}, {x + size, size, size}}});
+    }
+    return boxes;
+}
+
+AnyStructure filled(std::string_view name, std::span<const Move> boxes) {
+    AnyStructure structure = *AnyStructure::named(name);
+    structure.build(boxes);
+    return structure;
+}
+
+TEST(AutoStructure, TriesAllOfFewAndSortsMany) {
+    EXPECT_EQ(auto_structure({10}, {}), "brute_force");
+    EXPECT_EQ(auto_structure({10000}, {}), "row_grid");
+    EXPECT_NE(reason_for("brute_force"), reason_for("row_grid"));
+    EXPECT_TRUE(reason_for("octree").empty());
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked})
+        for (const bool flat : {false, true})
+            for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to trying all as the number grows
+                bool sorts = false;
+                for (std::size_t n = 0; n < 1000; ++n) {
+                    const bool now = auto_structure({n, spread, flat, use}, {}) == "row_grid";
+                    EXPECT_TRUE(now || !sorts) << n;
+                    sorts = now;
+                }
+                EXPECT_TRUE(sorts);
+            }
+}
+
+TEST(AutoStructure, DoesNotFlicker) {
+    // A count that goes up and down by a tenth changes the structure at most once.
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked}) {
+        for (std::size_t middle = 20; middle < 1000; middle += 5) {
+            std::string_view current = auto_structure({.boxes = middle, .use = use}, {});
+            int changes = 0;
+            for (int i = 0; i < 10; ++i) {
+                const std::size_t n = i % 2 == 0 ? middle * 10 / 11 : middle * 11 / 10;
+                const std::string_view next = auto_structure({.boxes = n, .use = use}, current);
+                changes += next != current ? 1 : 0;
+                current = next;
+            }
+            EXPECT_LE(changes, middle < 90 || middle > 470 ? 0 : 1) << middle;
+        }
+    }
+}
+
+TEST(AutoStructure, LooksAtSizesAndPlacesWhereTheyMatter) {
+    AnyStructure alike = filled("brute_force", row_of(100)), unlike = filled("brute_force", row_of(100, 9));
+    suit(alike, BoxUse::FindsPairs);
+    EXPECT_EQ(alike.info().name, "brute_force") << "not looked at closely";
+    suit(alike, BoxUse::IsAsked, true);
+    EXPECT_EQ(alike.info().name, "brute_force") << "few for those who ask";
+    suit(alike, BoxUse::FindsPairs, true);
+    suit(unlike, BoxUse::FindsPairs, true);
+    EXPECT_EQ(alike.info().name, "row_grid");
+    EXPECT_EQ(unlike.info().name, "brute_force");
+    std::vector<Move> cube;
+    for (Proxy p = 0; p < 100; ++p)
+        cube.push_back({p, {{float(p % 5) * 2, float(p / 5 % 5) * 2, float(p / 25) * 2}, {}}});
+    for (Move& m : cube) m.box.hi = m.box.lo + Vec3{1, 1, 1};
+    EXPECT_FALSE(statistics_of(cube, BoxUse::FindsPairs).flat);
+    EXPECT_TRUE(statistics_of(row_of(100), BoxUse::FindsPairs).flat);
+    EXPECT_FLOAT_EQ(statistics_of(row_of(100, 9), BoxUse::FindsPairs).size_spread, 9);
+}
+
+TEST(AutoStructure, EveryStructureBecomesEveryOther) {
+    for_each_structure([]<Structure From>() {
+        for_each_structure([]<Structure To>() {
+            std::vector<Move> boxes = row_of(40);
+            constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+            boxes.push_back({50, Aabb::everything()});
+            boxes.push_back({61, {{nan, 0, 0}, {1, 1, 1}}});
+            AnyStructure structure = filled(From::info.name, boxes);
+            const std::vector<Proxy> resting{3, 4, 5, 50};
+            structure.set_awake(resting, false);
+            const std::vector<Proxy> gone{7};
+            structure.erase(gone);  // not committed yet
+            structure.convert_to(*AnyStructure::named(To::info.name));
+            EXPECT_EQ(structure.info().name, To::info.name);
+            EXPECT_EQ(structure.size(), boxes.size() - 1);
+            EXPECT_EQ(structure.broken_invariant(), "");
+            for (const Proxy p : resting) EXPECT_FALSE(structure.is_awake(p));
+            EXPECT_TRUE(structure.is_awake(6));
+            std::vector<Pair> pairs;
+            structure.find_awake_pairs(pairs);
+            std::sort(pairs.begin(), pairs.end());
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{3, 4}), 0);
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{5, 6}), 1);
+            EXPECT_EQ(std::count(pairs.begin(), pairs.end(), Pair{8, 50}), 1);
+        });
+    });
+}
+
+TEST(AutoStructure, AnExplosionOfFewMakesManyAtOnce) {
+    // Nearly all are asleep, then all wake in one frame: the few awake ones were tried one by one.
+    std::vector<Aabb> boxes;
+    for (const Move& m : row_of(5000)) boxes.push_back(m.box);
+    std::vector<MotionState> motion_states(boxes.size(), MotionState::Asleep);
+    motion_states[0] = MotionState::Awake;
+    const auto tasks = make_serial_runner();
+    pairs::PairFinder finder = pairs::PairFinder::automatic();
+    finder.build(*tasks, boxes, motion_states);
+    EXPECT_EQ(finder.chosen(MotionState::Awake).structure, "brute_force");
+    EXPECT_EQ(finder.chosen(MotionState::Asleep).structure, "row_grid");
+    EXPECT_FALSE(finder.chosen(MotionState::Awake).reason.empty());
+    for (Aabb& box : boxes) box.hi.y += 1;
+    finder.update(*tasks, boxes);
+    EXPECT_EQ(finder.awake(), boxes.size());
+    EXPECT_EQ(finder.chosen(MotionState::Awake).structure, "row_grid");
+    EXPECT_EQ(finder.chosen(MotionState::Asleep).structure, "brute_force");
+    std::vector<Pair> pairs;
+    finder.find_pairs(*tasks, pairs);
+    EXPECT_EQ(pairs.size(), boxes.size() - 1);
+    EXPECT_EQ(finder.broken_invariant(), "");
+    EXPECT_TRUE(pairs::PairFinder().chosen(MotionState::Awake).reason.empty()) << "named by the user";
+}
+
+}  // namespace
+}  // namespace fase::broad
