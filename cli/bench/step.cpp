@@ -109,7 +109,7 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
     }
     static const std::vector<std::string> columns{
         "date",         "commit", "machine",  "scene",     "engine",     "settings",    "threads",
-        "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "least_ms",    "mean_ms_low",
+        "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "min_ms",    "mean_ms_low",
         "mean_ms_high", "bodies", "contacts", "hash",      "top_height", "mean_height", "drift"};
     return bench::append_to_table(file, columns, lines);
 }
