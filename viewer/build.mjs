@@ -1,4 +1,4 @@
-/** Builds the page: index.html, viewer.js and viewer.css. Usage: npm run build -- --out DIR */
+/** Builds the page: writes index.html, viewer.js and viewer.css. Usage: npm run build -- --out DIR */
 import { copyFile, mkdir } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import path from "node:path";

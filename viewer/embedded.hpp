@@ -1,14 +1,14 @@
 #pragma once
-/// The files of the viewer, built in.
+/// The files of the viewer, embedded in the program.
 #include <string_view>
 
 namespace fase::viewer {
 
-/// index.html: refers to `viewer.css` by a link and to `viewer.js` by a script element, each on a line.
+/// index.html. Its link to `viewer.css` and its script element for `viewer.js` are each on one line.
 [[nodiscard]] std::string_view page();
-/// viewer.js
+/// The text of viewer.js.
 [[nodiscard]] std::string_view script();
-/// viewer.css
+/// The text of viewer.css.
 [[nodiscard]] std::string_view style();
 
 }  // namespace fase::viewer

@@ -1,5 +1,6 @@
-# Runs `npm ci` in FOLDER when node_modules does not match package-lock.json; one build at a time. Usage: cmake -D NPM=… -D FOLDER=… -P …
-file(SHA256 ${FOLDER}/package-lock.json wanted)
+# Runs `npm ci` in FOLDER when node_modules does not match package-lock.json. A lock excludes other builds.
+# Usage: cmake -D NPM=… -D FOLDER=… -P npm_install.cmake
+file(SHA256 ${FOLDER}/package-lock.json expected)
 string(SHA256 folder_hash ${FOLDER})
 string(SUBSTRING ${folder_hash} 0 16 folder_hash)
 set(temporary /tmp)
@@ -8,12 +9,12 @@ if(DEFINED ENV{TMPDIR})
 endif()
 file(LOCK ${temporary}/fase-npm-${folder_hash}.lock GUARD PROCESS TIMEOUT 600 RESULT_VARIABLE locked)
 if(NOT locked STREQUAL "0")
-  message(WARNING "cannot lock the viewer's packages (${locked}); going on without")
+  message(WARNING "cannot lock the viewer's packages (${locked}); continuing without the lock")
 endif()
 set(stamp ${FOLDER}/node_modules/.installed-lock)
 if(EXISTS ${stamp})
   file(READ ${stamp} present)
-  if(present STREQUAL wanted)
+  if(present STREQUAL expected)
     return()
   endif()
 endif()
@@ -21,6 +22,6 @@ execute_process(COMMAND ${NPM} ci --no-audit --no-fund --prefer-offline --loglev
                 WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "npm ci failed in ${FOLDER}: the viewer's packages cannot be installed. "
-                      "Remedy: see above; needed is the network, or npm's cache of an earlier run.")
+                      "Remedy: see the output above; npm needs the network or the cache of an earlier run.")
 endif()
-file(WRITE ${stamp} ${wanted})
+file(WRITE ${stamp} ${expected})

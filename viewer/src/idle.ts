@@ -1,16 +1,16 @@
-/** Runs work in the browser's idle moments, a slice at a time. */
+/** Runs work in slices while the browser is idle. */
 
-const leastMs = 6;
-const patienceMs = 120;
+const minMs = 6;
+const timeoutMs = 120;
 
-/** Jobs run one after the other; a job that throws is dropped and reported. */
+/** Runs jobs in order. A job that throws is removed and reported. */
 export class IdleQueue {
   private readonly jobs: { work: Iterator<unknown>; done: () => void }[] = [];
   private running = false;
 
   constructor(private readonly onError: (error: unknown) => void) {}
 
-  /** `first`: before all that waits. */
+  /** Adds a job; `first`: before all waiting jobs. */
   add(work: Iterator<unknown>, options: { first?: boolean; done?: () => void } = {}): void {
     const job = { work, done: options.done ?? (() => {}) };
     if (options.first) this.jobs.unshift(job);
@@ -22,12 +22,12 @@ export class IdleQueue {
     this.running = this.jobs.length > 0;
     if (!this.running) return;
     if ("requestIdleCallback" in window)
-      requestIdleCallback((deadline) => this.run(deadline.timeRemaining()), { timeout: patienceMs });
-    else setTimeout(() => this.run(leastMs), 4);
+      requestIdleCallback((deadline) => this.run(deadline.timeRemaining()), { timeout: timeoutMs });
+    else setTimeout(() => this.run(minMs), 4);
   }
 
-  private run(free: number): void {
-    const end = performance.now() + Math.max(leastMs, free);
+  private run(idleMs: number): void {
+    const end = performance.now() + Math.max(minMs, idleMs);
     while (this.jobs.length > 0 && performance.now() < end) {
       const job = this.jobs[0];
       let isDone: boolean;

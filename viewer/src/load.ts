@@ -1,4 +1,4 @@
-/** Gets the bytes of a recording: from the page itself, from the server, or from a file that the user opens. */
+/** Loads the bytes of a recording from the page itself, from the server, or from a file that the user opens. */
 import { RecordingError } from "./format/bytes";
 import { Recording } from "./recording";
 
@@ -6,7 +6,7 @@ export type Progress = (text: string, share: number | null) => void;
 
 const base64Piece = 4 * 1024 * 1024;
 
-/** Bytes of the recording that the page carries in `<script id="recording">`, or null. */
+/** Returns the recording embedded in `<script id="recording">`, or null. */
 export async function embeddedBytes(progress: Progress): Promise<Uint8Array | null> {
   const element = document.getElementById("recording");
   if (!element) return null;
@@ -29,18 +29,18 @@ export async function embeddedBytes(progress: Progress): Promise<Uint8Array | nu
   return bytes.subarray(0, filled);
 }
 
-/** Bytes that the server gives under /recording. */
+/** Downloads /recording from the server. */
 export async function fetchedBytes(progress: Progress): Promise<Uint8Array> {
   let response: Response;
   try {
     response = await fetch("/recording");
   } catch {
-    throw new RecordingError("the server does not answer: is `fase view` still running?");
+    throw new RecordingError("the server does not respond; check that `fase view` is running");
   }
   if (!response.ok || !response.body) {
-    const words = (await response.text().catch(() => "")).trim().slice(0, 500);
+    const details = (await response.text().catch(() => "")).trim().slice(0, 500);
     throw new RecordingError(
-      `the server answers ${response.status} ${response.statusText}${words ? `\n${words}` : ""}`,
+      `the server responds with ${response.status} ${response.statusText}${details ? `\n${details}` : ""}`,
     );
   }
   const length = Number(response.headers.get("Content-Length")) || 0;
@@ -52,7 +52,7 @@ export async function fetchedBytes(progress: Progress): Promise<Uint8Array> {
     try {
       step = await reader.read();
     } catch {
-      throw new RecordingError(`the server broke off after ${filled} bytes`);
+      throw new RecordingError(`the connection ended after ${filled} bytes`);
     }
     if (step.done) break;
     pieces.push(step.value);
@@ -68,7 +68,7 @@ export async function fetchedBytes(progress: Progress): Promise<Uint8Array> {
   return bytes;
 }
 
-/** Opens a recording in slices, so that the page stays alive. */
+/** Opens a recording in slices, so that the page stays responsive. */
 export async function openInSlices(bytes: Uint8Array, progress: Progress): Promise<Recording> {
   const work = Recording.open(bytes);
   let last = performance.now();

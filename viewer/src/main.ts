@@ -1,4 +1,4 @@
-/** Where the page begins: loads the recording, starts the player, shows what goes wrong. */
+/** Entry point of the page: loads the recording, starts the player, shows errors. */
 import { RecordingError } from "./format/bytes";
 import { embeddedBytes, fetchedBytes, openInSlices } from "./load";
 import { Player } from "./player";
@@ -21,7 +21,7 @@ function showError(title: string, text: string): void {
   document.body.classList.add("bare");
 }
 
-/** A message that does not end the show; a click puts it away. */
+/** Shows a message beside the running player; a click hides it. */
 function showNote(text: string): void {
   const note = byId("note");
   note.textContent = text;
@@ -36,7 +36,7 @@ async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
   document.documentElement.classList.toggle("plain", drawing === "software");
   if (drawing === "none") {
     showError(
-      "This browser shows no 3D",
+      "This browser cannot draw 3D",
       "The viewer needs WebGL 2. Turn on hardware acceleration in the browser's settings, or use a newer browser.",
     );
     return;
@@ -47,9 +47,9 @@ async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
     const recording = await openInSlices(bytes, showProgress);
     byId("loading").hidden = true;
     const player = new Player(recording, drawing === "software", showNote);
-    if (recording.lost) {
-      const { frameCount, lost } = recording;
-      showNote(`The end of this recording is missing (${lost}). Shown is what is whole: ${frameCount} frames.`);
+    if (recording.damage) {
+      const { frameCount, damage } = recording;
+      showNote(`The end of this recording is missing (${damage}). The viewer shows the first ${frameCount} frames.`);
     }
     document.documentElement.dataset.state = "ready";
     Object.assign(window, { fase: player });
@@ -63,7 +63,7 @@ async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
 
 function openFile(file: File): void {
   if (document.documentElement.dataset.state === "ready") {
-    showNote("One recording at a time: reload the page to open another.");
+    showNote("A recording is already open. Reload the page to open another.");
     return;
   }
   void start(async () => new Uint8Array(await file.arrayBuffer()));

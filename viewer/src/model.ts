@@ -1,4 +1,5 @@
-/** What the viewer knows of a recording: bodies, their shapes, and their state frame by frame. */
+/** The data model of a recording: bodies, shapes, and their state frame by frame. */
+import type { Shape } from "./shapes/list";
 
 export type Vec3 = [number, number, number];
 /** x, y, z, w */
@@ -13,21 +14,13 @@ export interface Triangles {
   normals: Float32Array | null;
   triangles: Uint32Array;
 }
-export type Shape =
-  | { kind: "sphere"; radius: number }
-  | { kind: "box"; half: Vec3 }
-  | { kind: "capsule"; radius: number; halfLength: number }
-  | { kind: "cylinder"; radius: number; halfHeight: number }
-  | { kind: "convex hull"; mesh: Triangles }
-  | { kind: "half-space" }
-  | { kind: "mesh"; mesh: Triangles };
 
-/** A frame inside another: turns a point first, then moves it. */
+/** A local frame: rotates a point, then translates it. */
 export interface LocalPose {
   position: Vec3;
   rotation: Quat;
 }
-/** One shape on a body, there in frames [from, to). */
+/** One shape on a body; exists in frames [from, to). */
 export interface Collider {
   body: number;
   shape: number;
@@ -36,14 +29,14 @@ export interface Collider {
   from: number;
   to: number;
 }
-/** A mesh for the picture. `colour` is 0xrrggbb or null. */
+/** A mesh for display only. `colour` is 0xrrggbb or null. */
 export interface Visual {
   body: number;
   mesh: number;
   pose: LocalPose;
   colour: number | null;
 }
-/** One body that lived at any time; `index` and `generation` are its id in the world. */
+/** A body that exists in some frame; `index` and `generation` are its id in the world. */
 export interface Body {
   index: number;
   generation: number;
@@ -55,7 +48,7 @@ export interface Body {
   colliders: number[];
   visuals: number[];
 }
-/** What is the same in all frames. */
+/** Data shared by all frames. */
 export interface Tables {
   title: string;
   program: string;
@@ -95,7 +88,7 @@ export interface FrameEvents {
   sensorsEnded: PairEvent[];
   hits: HitEvent[];
 }
-/** Contact points of a frame, flat: three numbers a point in `points` and `normals`, one in `impulses`. */
+/** Contact points of a frame as flat arrays: three numbers per point in `points` and `normals`, one in the others. */
 export interface ContactPoints {
   points: Float64Array;
   normals: Float32Array;
@@ -108,20 +101,20 @@ export interface Frame {
   /** steps of the world so far, and the seconds they simulated */
   step: number;
   time: number;
-  /** 1 where the body lives */
+  /** 1: the body exists */
   present: Uint8Array;
   /** flagAwake, flagBroken, kindOf() */
   flags: Uint8Array;
-  /** 0: none; k + 1: the island whose least body slot is k */
+  /** 0: none; k + 1: the island whose lowest body slot is k */
   islands: Uint32Array;
-  /** metres, world, three a body */
+  /** metres, world frame, three per body */
   positions: Float64Array;
-  /** unit quaternions x y z w, four a body */
+  /** unit quaternions x y z w, four per body */
   rotations: Float32Array;
   events: FrameEvents;
   contacts: ContactPoints | null;
 }
-/** What the charts show of one frame. Milliseconds. */
+/** Chart data of one frame. Times in milliseconds. */
 export interface Summary {
   step: number;
   time: number;

@@ -1,11 +1,11 @@
-/** Where in the recording we are: time runs, stops, jumps. Knows nothing of pictures. */
+/** The current time in the recording: play, pause, seek. Independent of drawing. */
 
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
 export class Playback {
   playing = false;
   speed = 1;
-  /** frames, with a fraction: how far we are between two */
+  /** current frame, with a fraction */
   private at = 0;
 
   /** `secondsPerFrame`: mean time between frames, above 0. */
@@ -18,7 +18,7 @@ export class Playback {
   get frame(): number {
     return Math.floor(this.at);
   }
-  /** 0 to below 1: how far from this frame to the next */
+  /** fraction of the way from this frame to the next, 0 to below 1 */
   get share(): number {
     return this.at - this.frame;
   }
@@ -26,12 +26,12 @@ export class Playback {
     return this.frameCount - 1;
   }
 
-  /** Goes to a frame and stays within the recording. */
+  /** Goes to a frame, clamped to the recording. */
   seek(frame: number): void {
     this.at = Math.max(0, Math.min(this.last, Math.round(frame)));
     this.onChange();
   }
-  /** Pauses and goes so many frames on or back. */
+  /** Pauses and moves by a number of frames. */
   step(frames: number): void {
     this.playing = false;
     this.seek(frames > 0 ? this.frame + frames : Math.ceil(this.at) + frames);
@@ -51,7 +51,7 @@ export class Playback {
     this.setSpeed(speeds[Math.max(0, Math.min(speeds.length - 1, now + steps))]);
   }
 
-  /** Lets `seconds` of wall clock go by; a long gap (a sleeping tab) counts as a short one. */
+  /** Advances by `seconds` of real time; limits long gaps (a sleeping tab) to 0.1 s. */
   advance(seconds: number): void {
     if (!this.playing) return;
     this.at += (Math.min(seconds, 0.1) * this.speed) / this.secondsPerFrame;

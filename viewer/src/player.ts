@@ -1,4 +1,4 @@
-/** The player: ties a recording, its picture and the panels together. */
+/** The player: connects a recording, its view and the panels. */
 import { Charts } from "./ui/charts";
 import { BodyPanel } from "./ui/body_panel";
 import { byId, legendKey } from "./ui/dom";
@@ -16,7 +16,7 @@ import { View } from "./scene/view";
 
 const prepareAhead = 40;
 const hashPauseMs = 400;
-/** windows up to this width begin without charts */
+/** windows up to this width start without charts */
 const narrow = 720;
 
 export class Player {
@@ -36,22 +36,22 @@ export class Player {
   private chartTimer = 0;
   private preparing = -1;
 
-  /** `onTrouble` shows a message that does not end the show. */
+  /** `onError` shows a message; the player continues. */
   constructor(
     private readonly recording: Recording,
     isSoftware: boolean,
-    private readonly onTrouble: (text: string) => void,
+    private readonly onError: (text: string) => void,
   ) {
     const { tables, frameCount } = recording;
     const canvas = byId<HTMLCanvasElement>("scene");
-    const dirty = () => this.touch();
-    const place = readHash(location.hash);
+    const dirty = () => this.invalidate();
+    const pageState = readHash(location.hash);
     this.view = new View(canvas, tables, recording.frame(0), isSoftware, () => {
       this.isDirty = true;
       this.saveHash();
     });
     this.playback = new Playback(frameCount, tables.timeStep > 0 ? tables.timeStep : 1 / 60, dirty);
-    this.idle = new IdleQueue((error) => this.onTrouble((error as Error).message));
+    this.idle = new IdleQueue((error) => this.onError((error as Error).message));
     this.charts = new Charts(tables, frameCount, (frame) => this.playback.seek(frame));
     this.panel = new BodyPanel(tables, {
       follow: () => this.follow(!this.isFollowing),
@@ -64,11 +64,11 @@ export class Player {
     byId("chart-toggle").setAttribute("aria-pressed", String(!byId("charts").hidden));
     this.charts.draw(0);
     this.resize();
-    new ResizeObserver(() => this.noteDock()).observe(byId("dock"));
+    new ResizeObserver(() => this.publishDockHeight()).observe(byId("dock"));
     this.view.reframe();
     this.setColouring("material");
-    if (place.camera) this.view.camera.place = place.camera;
-    if (place.frame !== null) this.playback.seek(place.frame);
+    if (pageState.camera) this.view.camera.eyeAndTarget = pageState.camera;
+    if (pageState.frame !== null) this.playback.seek(pageState.frame);
     else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
     this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
     this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
@@ -99,9 +99,9 @@ export class Player {
       reframe: () => {
         this.follow(false);
         view.reframe();
-        this.touch();
+        this.invalidate();
       },
-      letGo: () => this.select(null),
+      deselect: () => this.select(null),
       help: () => (help.open ? help.close() : help.showModal()),
     };
     click("play", commands.toggle);
@@ -127,15 +127,15 @@ export class Player {
     this.scrub.addEventListener("input", () => playback.seek(Number(this.scrub.value)));
     window.addEventListener("resize", () => this.resize());
     window.addEventListener("hashchange", () => {
-      const place = readHash(location.hash);
-      if (place.camera) view.camera.place = place.camera;
-      if (place.frame === null) return;
+      const pageState = readHash(location.hash);
+      if (pageState.camera) view.camera.eyeAndTarget = pageState.camera;
+      if (pageState.frame === null) return;
       playback.playing = false;
-      playback.seek(place.frame);
+      playback.seek(pageState.frame);
     });
   }
 
-  private touch(): void {
+  private invalidate(): void {
     this.isDirty = true;
     this.drawn = -1;
     this.saveHash();
@@ -152,7 +152,7 @@ export class Player {
     if (!isMoving && !this.view.isCoarse) return;
     this.isDirty = false;
     if (this.drawn < 0) this.showFrame();
-    if (isMoving && this.wasMoving) this.quality.note(interval);
+    if (isMoving && this.wasMoving) this.quality.record(interval);
     this.wasMoving = isMoving;
     if (this.view.draw(isMoving ? this.quality.share : 1)) this.isDirty = true;
     state.frame = String(this.playback.frame);
@@ -167,7 +167,7 @@ export class Player {
       this.showBody(frame);
     } catch (error) {
       playback.playing = false;
-      this.onTrouble((error as Error).message);
+      this.onError((error as Error).message);
       return;
     }
     this.drawn = playback.frame;
@@ -189,14 +189,14 @@ export class Player {
   private showState(frame: Frame): void {
     const { playback, recording } = this;
     const { bodies, title } = recording.tables;
-    let living = 0;
+    let present = 0;
     let awake = 0;
     for (let row = 0; row < bodies.length; ++row) {
-      living += frame.present[row];
+      present += frame.present[row];
       awake += frame.present[row] & frame.flags[row] & 1;
     }
     byId("summary").textContent =
-      `${title ? `${title} · ` : ""}${living.toLocaleString("en-GB")} bodies, ${awake.toLocaleString("en-GB")} awake`;
+      `${title ? `${title} · ` : ""}${present.toLocaleString("en-GB")} bodies, ${awake.toLocaleString("en-GB")} awake`;
     const isPlaying = playback.playing;
     const play = byId("play");
     play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
@@ -223,7 +223,7 @@ export class Player {
 
   private refreshCharts(): void {
     const { summaries } = this.charts;
-    this.charts.take();
+    this.charts.appendNew();
     if (summaries.length >= this.recording.frameCount) window.clearInterval(this.chartTimer);
     drawMarks(byId<HTMLCanvasElement>("marks"), summaries, this.recording.frameCount);
     if (!byId("charts").hidden) this.charts.draw(this.playback.frame);
@@ -232,21 +232,21 @@ export class Player {
   private select(row: number | null): void {
     if (row !== this.view.selected) this.follow(false);
     this.view.select(row);
-    this.touch();
+    this.invalidate();
   }
 
   private follow(on: boolean): void {
     const row = this.view.selected;
     this.isFollowing = on && row !== null;
     this.view.follow(this.isFollowing ? row : null);
-    this.touch();
+    this.invalidate();
   }
 
   private setColouring(by: Colouring): void {
     this.view.colouring = by;
     byId<HTMLSelectElement>("colours").value = by;
     byId("legend").replaceChildren(...legendOf(by).map(({ name, colour }) => legendKey(colour, name)));
-    this.touch();
+    this.invalidate();
   }
 
   private press(id: string, act: (on: boolean) => void): void {
@@ -255,7 +255,7 @@ export class Player {
     const on = button.getAttribute("aria-pressed") !== "true";
     button.setAttribute("aria-pressed", String(on));
     act(on);
-    this.touch();
+    this.invalidate();
   }
 
   private showCharts(on: boolean): void {
@@ -270,15 +270,15 @@ export class Player {
   }
 
   private resize(): void {
-    this.noteDock();
+    this.publishDockHeight();
     this.view.resize(window.innerWidth, window.innerHeight, byId("dock").offsetHeight);
     this.charts.resize();
     this.refreshCharts();
-    this.touch();
+    this.invalidate();
   }
 
-  /** Other panels keep clear of the dock. */
-  private noteDock(): void {
+  /** Publishes the height of the dock, so that other panels stay above it. */
+  private publishDockHeight(): void {
     document.documentElement.style.setProperty("--dock", `${byId("dock").offsetHeight}px`);
   }
 
@@ -286,7 +286,7 @@ export class Player {
     window.clearTimeout(this.hashTimer);
     this.hashTimer = window.setTimeout(() => {
       if (this.playback.playing) return this.saveHash();
-      const hash = writeHash({ frame: this.playback.frame, camera: this.view.camera.place });
+      const hash = writeHash({ frame: this.playback.frame, camera: this.view.camera.eyeAndTarget });
       history.replaceState(null, "", hash);
     }, hashPauseMs);
   }

@@ -1,4 +1,4 @@
-/** A recording opened for random access: blocks are unpacked when asked for, frames kept while memory allows. */
+/** A recording with random access: unpacks blocks on demand and caches frames within a memory budget. */
 import { type Chunk, walkChunks } from "./format/chunks";
 import { RecordingError } from "./format/bytes";
 import { BlockDecoder, readBlockLayout, readBlockRange } from "./format/frames";
@@ -17,10 +17,10 @@ interface Block {
   chunk: Chunk;
 }
 
-/** Keeps the most recently used values, up to a number of them (at least one). */
-class Recent<T> {
+/** A least-recently-used cache with a maximum number of values (at least one). */
+class LruCache<T> {
   private readonly values = new Map<number, T>();
-  constructor(private readonly most: number) {}
+  constructor(private readonly capacity: number) {}
   get(key: number): T | undefined {
     const value = this.values.get(key);
     if (value === undefined) return undefined;
@@ -35,7 +35,7 @@ class Recent<T> {
     this.values.delete(key);
     this.values.set(key, value);
     for (const oldest of this.values.keys()) {
-      if (this.values.size <= Math.max(1, this.most)) break;
+      if (this.values.size <= Math.max(1, this.capacity)) break;
       this.values.delete(oldest);
     }
   }
@@ -43,64 +43,64 @@ class Recent<T> {
 
 export class Recording {
   readonly frameCount: number;
-  private readonly raws: Recent<Uint8Array>;
-  private readonly frames: Recent<Frame>;
+  private readonly raws: LruCache<Uint8Array>;
+  private readonly frames: LruCache<Frame>;
   private decoder: { block: number; at: BlockDecoder } | null = null;
 
   private constructor(
     readonly tables: Tables,
     private readonly blocks: Block[],
-    /** why the end of the file is missing, in words; empty when nothing is */
-    readonly lost: string,
+    /** why the end of the file is missing; empty: nothing is missing */
+    readonly damage: string,
   ) {
     const last = blocks[blocks.length - 1];
     this.frameCount = last.first + last.count;
-    this.frames = new Recent(Math.max(4, Math.floor(frameBudget / (bytesPerBody * tables.bodies.length + 4096))));
+    this.frames = new LruCache(Math.max(4, Math.floor(frameBudget / (bytesPerBody * tables.bodies.length + 4096))));
     const largest = Math.max(...blocks.map(({ chunk }) => rawLengthOf(chunk)));
-    this.raws = new Recent(Math.max(2, Math.floor(rawBudget / Math.max(1, largest))));
+    this.raws = new LruCache(Math.max(2, Math.floor(rawBudget / Math.max(1, largest))));
   }
 
-  /** Opens a file; yields the share that is done (0 to 1). Throws RecordingError when there is nothing to show. */
+  /** Opens a file; yields the finished share (0 to 1). Throws RecordingError when no frame can be shown. */
   static *open(file: Uint8Array): Generator<number, Recording> {
-    const { chunks, lost } = yield* walkChunks(file);
-    if (chunks[0]?.type !== "HEAD") throw new RecordingError(lost || "found no HEAD as first chunk");
+    const { chunks, damage } = yield* walkChunks(file);
+    if (chunks[0]?.type !== "HEAD") throw new RecordingError(damage || "found no HEAD as first chunk");
     const tables = decodeHead(unpack(chunks[0].body, "HEAD"));
-    const mostBytes = 4 * 1024 * 1024 + 16 * file.length;
+    const maxBytes = 4 * 1024 * 1024 + 16 * file.length;
     let tableBytes = rawLengthOf(chunks[0]);
-    let trouble = lost;
+    let problem = damage;
     const blocks: Block[] = [];
     let next = 0;
     for (const chunk of chunks.slice(1)) {
       try {
         if (chunk.type === "FRMS") {
           const { first, count } = readBlockRange(unpack(chunk.body, "FRMS", 12));
-          if (first !== next) throw new RecordingError(`found a block of frame ${first}, need frame ${next}`);
+          if (first !== next) throw new RecordingError(`found a block of frame ${first}; expected frame ${next}`);
           blocks.push({ first, count, chunk });
           next += count;
         } else if (chunk.type === "HEAD") {
           throw new RecordingError("found a second HEAD");
         } else {
           tableBytes += rawLengthOf(chunk);
-          if (tableBytes > mostBytes) throw new RecordingError(`the tables expand to more than ${mostBytes} bytes`);
+          if (tableBytes > maxBytes) throw new RecordingError(`the tables expand to more than ${maxBytes} bytes`);
           addRows(tables, chunk.type, unpack(chunk.body, chunk.type));
         }
       } catch (error) {
         if (!(error instanceof RecordingError)) throw error;
         if (blocks.length === 0) throw new RecordingError(`chunk at byte ${chunk.offset}: ${error.message}`);
-        trouble = `chunk at byte ${chunk.offset}: ${error.message}`;
+        problem = `chunk at byte ${chunk.offset}: ${error.message}`;
         break;
       }
       yield 1;
     }
-    if (blocks.length === 0) throw new RecordingError(trouble ? `no frame is whole (${trouble})` : "found no frames");
-    return new Recording(tables, blocks, trouble);
+    if (blocks.length === 0) throw new RecordingError(problem ? `found no complete frame (${problem})` : "found no frames");
+    return new Recording(tables, blocks, problem);
   }
 
   static openNow(file: Uint8Array): Recording {
     return finish(Recording.open(file));
   }
 
-  /** The state at a frame, 0 to frameCount - 1. Fast for the frame after the last and for recent ones. */
+  /** Returns the state at a frame, 0 to frameCount - 1. Fast for the next frame and for recent ones. */
   frame(number: number): Frame {
     const known = this.frames.get(number);
     if (known) return known;
@@ -124,7 +124,7 @@ export class Recording {
     return frame;
   }
 
-  /** Unpacks the block of a frame ahead of its use; yields between slices of a few milliseconds. */
+  /** Unpacks the block of a frame in advance; yields between slices of a few milliseconds. */
   *prepare(number: number): Generator<unknown, void> {
     if (number < 0 || number >= this.frameCount) return;
     const block = this.blockOf(number);

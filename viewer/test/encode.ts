@@ -1,8 +1,10 @@
-/** Writes recordings as fase/record/format.md describes them: the other half of the decoder's tests. */
+/** Encodes recordings as described in fase/record/format.md, to test the decoder. */
 import { crc32 } from "../src/format/crc32";
-import type { PairEvent, HitEvent, Quat, Shape, Triangles, Vec3, LocalPose } from "../src/model";
+import type { PairEvent, HitEvent, Quat, Triangles, Vec3, LocalPose } from "../src/model";
+import type { Shape } from "../src/shapes/list";
+import { writeShape } from "./shapes";
 
-/** A growing list of bytes. */
+/** A growing byte buffer. */
 export class Writer {
   private buffer = new Uint8Array(1024);
   length = 0;
@@ -67,7 +69,7 @@ export class Writer {
 
 export type Packer = (raw: Uint8Array) => { method: number; packed: Uint8Array };
 export const plain: Packer = (raw) => ({ method: 0, packed: raw });
-/** A zstd frame of raw blocks: valid, if no smaller. */
+/** Packs into a zstd frame of raw blocks: valid, but not smaller. */
 export const zstdRaw: Packer = (raw) => {
   const out = new Writer();
   out.u32(0xfd2fb528);
@@ -133,13 +135,6 @@ export function head({ title, timeStep, quantaPerMetre, hasContacts, stageNames,
   return out.done();
 }
 
-function writeTriangles(out: Writer, { vertices, triangles }: Triangles): void {
-  out.u32(vertices.length / 3);
-  out.u32(triangles.length / 3);
-  out.f32(...vertices);
-  triangles.forEach((vertex) => out.u32(vertex));
-}
-
 function table<T>(rows: T[], write: (out: Writer, row: T) => void): Uint8Array {
   const out = new Writer();
   out.u32(rows.length);
@@ -147,28 +142,7 @@ function table<T>(rows: T[], write: (out: Writer, row: T) => void): Uint8Array {
   return out.done();
 }
 
-export const shapes = (rows: Shape[]): Uint8Array =>
-  table(rows, (out, shape) => {
-    switch (shape.kind) {
-      case "sphere":
-        out.u8(0);
-        return out.f32(shape.radius);
-      case "box":
-        out.u8(1);
-        return out.f32(...shape.half);
-      case "capsule":
-        out.u8(2);
-        return out.f32(shape.radius, shape.halfLength);
-      case "cylinder":
-        out.u8(3);
-        return out.f32(shape.radius, shape.halfHeight);
-      case "half-space":
-        return out.u8(5);
-      default:
-        out.u8(shape.kind === "convex hull" ? 4 : 6);
-        return writeTriangles(out, shape.mesh);
-    }
-  });
+export const shapes = (rows: Shape[]): Uint8Array => table(rows, writeShape);
 
 export const meshes = (rows: Triangles[]): Uint8Array =>
   table(rows, (out, { vertices, normals, triangles }) => {
@@ -239,7 +213,7 @@ export const visuals = (rows: { body: number; mesh: number; pose?: LocalPose; co
     writeColour(out, colour);
   });
 
-/** The state of one body in a frame to be written. */
+/** The state of one body in a frame to encode. */
 export interface BodyInput {
   row: number;
   position: Vec3;
@@ -266,7 +240,7 @@ export interface FrameInput {
   contacts?: ContactInput[];
 }
 
-/** A pose as the file has it. */
+/** A pose as stored in the file. */
 interface Coded {
   quanta: number[];
   codes: number[];
@@ -287,7 +261,7 @@ export function codeRotation(rotation: Quat): { codes: number[]; largest: number
 const zigzag = (n: number) => (n >= 0 ? 2 * n : -2 * n - 1);
 const wrap14 = (n: number) => ((n + 8192) & 16383) - 8192;
 
-/** Turns frames into the raw bytes of blocks; remembers what the decoder remembers. */
+/** Encodes frames into the raw bytes of blocks; keeps the same state as the decoder. */
 export class FrameEncoder {
   private readonly last = new Map<number, Coded & { flags: number; island: number; steps: number[] }>();
   private readonly frames: Uint8Array[] = [];
@@ -296,7 +270,7 @@ export class FrameEncoder {
 
   constructor(private readonly quantaPerMetre: number) {}
 
-  /** Adds a frame; the first of a block is a key frame. */
+  /** Adds a frame. The first of a block is a key frame. */
   add(input: FrameInput): void {
     const isKey = this.frames.length === 0;
     if (isKey) this.last.clear();
@@ -320,7 +294,7 @@ export class FrameEncoder {
     return this.frames.length;
   }
 
-  /** The raw bytes of the block so far; begins the next. */
+  /** Returns the raw bytes of the current block and starts the next. */
   takeBlock(): Uint8Array {
     const out = new Writer();
     out.u64(this.first);
@@ -374,7 +348,7 @@ export class FrameEncoder {
         a.codes.some((x, i) => x !== b.codes[i])
       );
     });
-    const missed = (row: number) => {
+    const residuals = (row: number) => {
       const [a, b] = [before(row), of(row)];
       return [
         ...b.quanta.map((x, i) => x - a.quanta[i] - a.steps[i]),
@@ -382,7 +356,7 @@ export class FrameEncoder {
       ];
     };
     const jumped = changed.filter((row) =>
-      missed(row)
+      residuals(row)
         .slice(0, 3)
         .some((e) => e < -32768 || e > 32767),
     );
@@ -390,7 +364,7 @@ export class FrameEncoder {
     list(jumped);
     this.writePoses(out, jumped.map(of));
     list(moved);
-    const words = moved.map((row) => missed(row).map(zigzag));
+    const words = moved.map((row) => residuals(row).map(zigzag));
     for (let column = 0; column < 6; ++column)
       out.planes16(words.map((six, i) => six[column] | (column === 3 ? of(moved[i]).largest << 14 : 0)));
 

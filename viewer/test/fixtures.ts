@@ -1,6 +1,7 @@
-/** Recordings made for the tests: a wall of blocks that balls break, with every shape and event once. */
+/** Recordings for the tests: a wall that a ball breaks, with every shape and event at least once. */
 import { hash01 } from "../src/scene/maths";
-import type { Quat, Shape, Triangles, Vec3 } from "../src/model";
+import type { Quat, Vec3 } from "../src/model";
+import type { Shape } from "../src/shapes/list";
 import {
   type BodyInput,
   type BodyRow,
@@ -20,20 +21,11 @@ import {
   shapes,
   visuals,
 } from "./encode";
+import { octahedron } from "./shapes";
 
 export const quanta = 2048;
 const timeStep = 1 / 60;
 const gravity = 9.81;
-
-/** An octahedron, counter-clockwise from outside. */
-export function octahedron(radius: number): Triangles {
-  const r = radius;
-  return {
-    vertices: new Float32Array([r, 0, 0, -r, 0, 0, 0, r, 0, 0, -r, 0, 0, 0, r, 0, 0, -r]),
-    normals: null,
-    triangles: new Uint32Array([0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5]),
-  };
-}
 
 interface Actor extends Omit<BodyRow, "index" | "generation" | "user"> {
   shape: number;
@@ -41,13 +33,13 @@ interface Actor extends Omit<BodyRow, "index" | "generation" | "user"> {
   mesh?: number;
   half: number;
   start: Vec3;
-  /** when it is set free, how fast, and how it turns; null: it stays */
+  /** when it starts to move, its velocity and spin; null: it does not move */
   free: { at: number; velocity: Vec3; spin: Vec3 } | null;
-  /** seconds of its life */
-  lives?: [number, number];
+  /** seconds [from, to) in which it exists */
+  exists?: [number, number];
 }
 
-const turn = (axis: Vec3, angle: number): Quat => {
+const rotationAbout = (axis: Vec3, angle: number): Quat => {
   const length = Math.hypot(...axis) || 1;
   const s = Math.sin(angle / 2) / length;
   return [axis[0] * s, axis[1] * s, axis[2] * s, Math.cos(angle / 2)];
@@ -121,19 +113,19 @@ function cast(columns: number, courses: number): Actor[] {
       colour: 0xf1c40f,
       start: [-6, 5, 2],
       free: fall([1, 1, 1]),
-      lives: [0.5, 3],
+      exists: [0.5, 3],
     },
     { ...still, name: "statue", shape: 7, mesh: 0, half: 0.3, start: [7, 0.6, 3] },
     ...wall(columns, courses),
   ];
 }
 
-/** The state of an actor at a time: thrown, then at rest where it lands. */
+/** Returns the state of an actor at a time: thrown, then sliding to rest where it lands. */
 function stateOf(actor: Actor, row: number, time: number): BodyInput {
   const kind = actor.kind << 2;
   if (actor.kind === 1) {
     const position: Vec3 = [actor.start[0], actor.start[1] + 0.7 * Math.sin(time * 2), actor.start[2]];
-    return { row, position, rotation: turn([0, 1, 0], time), flags: kind | 1, island: 0 };
+    return { row, position, rotation: rotationAbout([0, 1, 0], time), flags: kind | 1, island: 0 };
   }
   const since = actor.free ? time - actor.free.at : -1;
   if (!actor.free || since <= 0) {
@@ -148,20 +140,20 @@ function stateOf(actor: Actor, row: number, time: number): BodyInput {
   }
   const { velocity, spin } = actor.free;
   const drop = actor.start[1] - actor.half;
-  const lands = (velocity[1] + Math.sqrt(velocity[1] ** 2 + 2 * gravity * drop)) / gravity;
-  const t = Math.min(since, lands);
-  const slide = Math.min(Math.max(0, since - lands), 0.6);
+  const landing = (velocity[1] + Math.sqrt(velocity[1] ** 2 + 2 * gravity * drop)) / gravity;
+  const t = Math.min(since, landing);
+  const slide = Math.min(Math.max(0, since - landing), 0.6);
   const run = t + slide - slide * slide * 0.8;
   const position: Vec3 = [
     actor.start[0] + velocity[0] * run,
     Math.max(actor.half, actor.start[1] + velocity[1] * t - (gravity / 2) * t * t),
     actor.start[2] + velocity[2] * run,
   ];
-  const isAwake = since < lands + 1;
+  const isAwake = since < landing + 1;
   return {
     row,
     position,
-    rotation: turn(spin, Math.hypot(...spin) * run),
+    rotation: rotationAbout(spin, Math.hypot(...spin) * run),
     flags: kind | (isAwake ? 1 : 0),
     island: isAwake ? 1 + (row % 12) : 0,
   };
@@ -176,11 +168,11 @@ export interface FixtureOptions {
   timeStep?: number;
 }
 
-/** What went into a fixture, to be compared with what comes out. */
+/** A recording and the frames that it was made from. */
 export interface Fixture {
   file: Uint8Array;
   inputs: FrameInput[];
-  /** where each chunk begins */
+  /** offset of each chunk */
   chunkOffsets: number[];
 }
 
@@ -234,7 +226,7 @@ export function makeFixture(options: FixtureOptions = {}): Fixture {
 function frameAt(actors: Actor[], number: number): FrameInput {
   const time = number * timeStep;
   const states = actors.flatMap((actor, row) => {
-    const [from, to] = actor.lives ?? [0, Infinity];
+    const [from, to] = actor.exists ?? [0, Infinity];
     return time >= from && time < to ? [stateOf(actor, row, time)] : [];
   });
   const awake = states.filter(({ flags }) => flags & 1).length;

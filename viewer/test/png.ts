@@ -1,7 +1,7 @@
 /** Writes PNG files of 8-bit RGBA, for tests. */
 import { deflateSync } from "node:zlib";
 
-/** Rows from above, four bytes a pixel. */
+/** Rows from top to bottom, four bytes per pixel. */
 export interface Picture {
   width: number;
   height: number;
@@ -32,7 +32,7 @@ export function pngOf({ width, height, pixels }: Picture): Buffer {
   header.writeUInt32BE(width, 0);
   header.writeUInt32BE(height, 4);
   header.set([8, 6, 0, 0, 0], 8);
-  const rows = Buffer.alloc(height * (4 * width + 1)); // each begins with its filter: none
+  const rows = Buffer.alloc(height * (4 * width + 1)); // each row starts with its filter type: none
   for (let y = 0; y < height; ++y)
     rows.set(pixels.subarray(4 * y * width, 4 * (y + 1) * width), y * (4 * width + 1) + 1);
   return Buffer.concat([

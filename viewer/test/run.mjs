@@ -1,4 +1,4 @@
-/** Bundles the tests of a kind and runs them: node test/run.mjs unit|browser [options of node --test] */
+/** Bundles and runs the tests of one kind. Usage: node test/run.mjs unit|browser [options of node --test] */
 import { mkdtemp, rm } from "node:fs/promises";
 import { spawnSync } from "node:child_process";
 import { fileURLToPath } from "node:url";

@@ -1,22 +1,22 @@
-/** Finds the chunks of a recording: magic, version, then from check to check up to the first that is not whole. */
+/** Finds the chunks of a recording: checks magic and version, then each chunk up to the first damaged one. */
 import { RecordingError } from "./bytes";
 import { crc32 } from "./crc32";
 
-export const readsVersion = 1;
+export const supportedVersion = 1;
 const headerBytes = 16;
 const bytesBeforePause = 8 * 1024 * 1024;
 
-/** One chunk: its four letters, where it begins in the file, and its body. */
+/** One chunk: its four-letter type, its offset in the file, and its body. */
 export interface Chunk {
   type: string;
   offset: number;
   body: Uint8Array;
 }
 
-/** All whole chunks; `lost` says in words why the walk ended before the end of the file, or is empty. */
+/** All complete chunks. `damage` explains why the scan stopped before the end of the file, or is empty. */
 export interface ChunkList {
   chunks: Chunk[];
-  lost: string;
+  damage: string;
 }
 
 const ascii = (bytes: Uint8Array, at: number, count: number) => String.fromCharCode(...bytes.subarray(at, at + count));
@@ -31,15 +31,15 @@ function checkHeader(file: Uint8Array): void {
   const view = new DataView(file.buffer, file.byteOffset);
   const version = view.getUint32(8, true);
   if (view.getUint32(12, true) !== crc32(file, 0, 12))
-    throw new RecordingError("byte 12: the header is damaged (wrong check)");
-  if (version !== readsVersion)
+    throw new RecordingError("byte 12: the header is damaged (wrong checksum)");
+  if (version !== supportedVersion)
     throw new RecordingError(
-      `version ${version}, this viewer reads ${readsVersion}` +
-        (version > readsVersion ? ": open it with a newer Fase" : ""),
+      `found version ${version}; this viewer reads ${supportedVersion}` +
+        (version > supportedVersion ? ": open it with a newer Fase" : ""),
     );
 }
 
-/** Walks the file; yields the share that is checked (0 to 1) now and then. Throws when not even the header holds. */
+/** Scans the file. Yields the checked share (0 to 1) from time to time. Throws when the header is invalid. */
 export function* walkChunks(file: Uint8Array): Generator<number, ChunkList> {
   checkHeader(file);
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
@@ -47,14 +47,14 @@ export function* walkChunks(file: Uint8Array): Generator<number, ChunkList> {
   let pause = bytesBeforePause;
   let at = headerBytes;
   while (at < file.length) {
-    const lost = (why: string): ChunkList => ({ chunks, lost: `byte ${at}: ${why}` });
-    if (file.length - at < 12) return lost("the file ends inside a chunk");
+    const damage = (why: string): ChunkList => ({ chunks, damage: `byte ${at}: ${why}` });
+    if (file.length - at < 12) return damage("the file ends inside a chunk");
     const length = view.getUint32(at + 4, true);
     const end = at + 8 + length;
-    if (end + 4 > file.length) return lost("the file ends inside a chunk");
-    if (view.getUint32(end, true) !== crc32(file, at, end)) return lost("a chunk is damaged (wrong check)");
+    if (end + 4 > file.length) return damage("the file ends inside a chunk");
+    if (view.getUint32(end, true) !== crc32(file, at, end)) return damage("a chunk is damaged (wrong checksum)");
     const type = ascii(file, at, 4);
-    if (!/^[A-Za-z]{4}$/.test(type)) return lost("found no type of chunk");
+    if (!/^[A-Za-z]{4}$/.test(type)) return damage("found an invalid chunk type");
     if (type === "INDX") break; // only the tail follows
     chunks.push({ type, offset: at, body: file.subarray(at + 8, end) });
     at = end + 4;
@@ -63,5 +63,5 @@ export function* walkChunks(file: Uint8Array): Generator<number, ChunkList> {
       pause = at + bytesBeforePause;
     }
   }
-  return { chunks, lost: "" };
+  return { chunks, damage: "" };
 }

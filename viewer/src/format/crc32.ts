@@ -9,7 +9,7 @@ for (let n = 0; n < 256; ++n) {
 for (let n = 0; n < 256; ++n)
   for (let k = 1; k < 8; ++k) tables[k][n] = (tables[k - 1][n] >>> 8) ^ tables[0][tables[k - 1][n] & 255];
 
-/** The check of bytes [from, to). */
+/** Returns the checksum of bytes [from, to). */
 export function crc32(bytes: Uint8Array, from = 0, to = bytes.length): number {
   const [t0, t1, t2, t3, t4, t5, t6, t7] = tables;
   let c = 0xffffffff;

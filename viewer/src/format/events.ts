@@ -2,7 +2,7 @@
 import type { ContactPoints, FrameEvents, HitEvent, PairEvent, Tables, Vec3 } from "../model";
 import type { Reader } from "./bytes";
 
-/** Columns a and b of a list of collider pairs. */
+/** Reads the columns a and b of a list of collider pairs. */
 function readPairs(read: Reader, count: number, tables: Tables): PairEvent[] {
   const limit = tables.colliders.length;
   const a = read.running(count);
@@ -10,7 +10,7 @@ function readPairs(read: Reader, count: number, tables: Tables): PairEvent[] {
   for (let i = 0; i < count; ++i) {
     const b = a[i] + read.varint();
     for (const row of [a[i], b])
-      if (row < 0 || row >= limit) read.fail(`found collider row ${row}, need 0 to below ${limit}`);
+      if (row < 0 || row >= limit) read.fail(`found collider row ${row}; expected 0 to ${limit - 1}`);
     pairs.push({ a: a[i], b });
   }
   return pairs;
@@ -18,7 +18,7 @@ function readPairs(read: Reader, count: number, tables: Tables): PairEvent[] {
 
 const readPairList = (read: Reader, tables: Tables) => readPairs(read, read.count(2), tables);
 
-/** Three columns of quanta as points in metres, three numbers each. */
+/** Reads three columns of quanta; returns points in metres, three numbers each. */
 function readPoints(read: Reader, count: number, tables: Tables): Float64Array {
   const points = new Float64Array(3 * count);
   for (let axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ export function readContacts(read: Reader, tables: Tables): ContactPoints {
   const normalOf = read.floats(3 * count);
   let total = 0;
   for (const points of pointsOf) {
-    if (points > 4) read.fail(`found a contact of ${points} points, need 0 to 4`);
+    if (points > 4) read.fail(`found a contact of ${points} points; expected 0 to 4`);
     total += points;
   }
   if (total * 11 > read.left) read.fail(`found ${total} contact points, but only ${read.left} bytes follow`);

@@ -1,41 +1,41 @@
-/** Decodes one block of frames: a key frame, then what changed from frame to frame. */
+/** Decodes one block of frames: a key frame, then the changes from frame to frame. */
 import type { Frame, Tables } from "../model";
 import { Reader } from "./bytes";
 import { readContacts, readEvents } from "./events";
 
-const mostFrames = 64;
+const maxFrames = 64;
 
-/** Where the frames of a block begin and end inside its raw bytes. */
+/** The begin and end offsets of the frames in the raw bytes of a block. */
 export interface BlockLayout {
   first: number;
   begins: number[];
   ends: number[];
 }
 
-/** The first frame's number and the count, from the first 12 raw bytes of a block. */
+/** Reads the first frame's number and the frame count from the first 12 raw bytes of a block. */
 export function readBlockRange(raw: Uint8Array): { first: number; count: number } {
   const read = new Reader(raw, "FRMS");
   const first = read.count64();
   const count = read.u32();
-  if (count < 1 || count > mostFrames) read.fail(`found ${count} frames, need 1 to ${mostFrames}`);
+  if (count < 1 || count > maxFrames) read.fail(`found ${count} frames; expected 1 to ${maxFrames}`);
   return { first, count };
 }
 
 export function readBlockLayout(raw: Uint8Array): BlockLayout {
   const { first, count } = readBlockRange(raw);
   const read = new Reader(raw, `block of frame ${first}`);
-  read.take(12);
+  read.advance(12);
   const begins: number[] = [];
   const ends: number[] = [];
   for (let i = 0; i < count; ++i) {
-    begins.push(read.take(read.u32()));
-    ends.push(read.at);
+    begins.push(read.advance(read.u32()));
+    ends.push(read.offset);
   }
   if (read.left > 0) read.fail(`found ${read.left} bytes after the last frame`);
   return { first, begins, ends };
 }
 
-/** What stands at the beginning of every frame. */
+/** The fields at the beginning of every frame. */
 export interface FrameHead {
   isKey: boolean;
   hasContacts: boolean;
@@ -50,7 +50,7 @@ export function readFrameHead(read: Reader, tables: Tables): FrameHead {
   const flags = read.u8();
   const step = read.count64();
   const time = read.f64();
-  if (!Number.isFinite(time)) read.fail(`found time ${time}, need a finite number`);
+  if (!Number.isFinite(time)) read.fail(`found time ${time}; expected a finite number`);
   const total = read.f32();
   const stages = read.floats(tables.stageNames.length);
   const counters = tables.counterNames.map(() => read.varuint());
@@ -59,9 +59,9 @@ export function readFrameHead(read: Reader, tables: Tables): FrameHead {
 
 const unzigzag = (u: number): number => (u & 1 ? -((u + 1) >>> 1) : u >>> 1);
 
-/** The state that one frame hands to the next, by body row: quanta, rotation codes, and the steps of the last frame. */
+/** Decodes the frames in order. Its state by body row: quanta, rotation codes, and the steps of the last frame. */
 export class BlockDecoder {
-  /** index in the block of the frame that next() decodes */
+  /** index in the block of the next frame */
   index = 0;
   private readonly present: Uint8Array;
   private readonly flags: Uint8Array;
@@ -72,10 +72,10 @@ export class BlockDecoder {
   private readonly codes: Int32Array;
   private readonly largest: Uint8Array;
   private readonly steps: Float64Array;
-  /** index of the frame in which *moved* named the row last: its steps count in the next frame only */
-  private readonly movedIn: Int32Array;
-  /** index of the frame in which added, jumped or moved named the row last: once a frame is all that is allowed */
-  private readonly posedIn: Int32Array;
+  /** index of the last frame whose *moved* list had the row; its steps are valid in the next frame only */
+  private readonly lastMoved: Int32Array;
+  /** index of the last frame whose added, jumped or moved list had the row; at most one of them per frame */
+  private readonly lastPosed: Int32Array;
 
   constructor(
     private readonly tables: Tables,
@@ -92,12 +92,12 @@ export class BlockDecoder {
     this.codes = new Int32Array(3 * n);
     this.largest = new Uint8Array(n);
     this.steps = new Float64Array(6 * n);
-    this.movedIn = new Int32Array(n).fill(-2);
-    this.posedIn = new Int32Array(n).fill(-2);
+    this.lastMoved = new Int32Array(n).fill(-2);
+    this.lastPosed = new Int32Array(n).fill(-2);
     for (let row = 0; row < n; ++row) this.rotations[4 * row + 3] = 1;
   }
 
-  /** Decodes the next frame; the arrays of the answer are its own. */
+  /** Decodes the next frame. The result owns its arrays. */
   next(): Frame {
     const { tables, layout, index } = this;
     const number = layout.first + index;
@@ -106,14 +106,14 @@ export class BlockDecoder {
     if (index === 0 && !head.isKey) read.fail("found no key frame at the beginning of a block");
     if (head.isKey) this.present.fill(0);
 
-    for (const row of this.readRows(read, "living")) this.present[row] = 0;
+    for (const row of this.readRows(read, "present")) this.present[row] = 0;
     this.readAdded(read);
-    const flagged = this.readRows(read, "living");
+    const flagged = this.readRows(read, "present");
     const flags = read.octets(flagged.length);
     for (let i = 0; i < flagged.length; ++i) this.flags[flagged[i]] = flags[i];
-    for (const row of this.readRows(read, "living")) this.islands[row] = read.varuint();
-    this.readPoses(read, this.readRows(read, "living"));
-    this.readMoves(read, this.readRows(read, "living"));
+    for (const row of this.readRows(read, "present")) this.islands[row] = read.varuint();
+    this.readPoses(read, this.readRows(read, "present"));
+    this.readMoves(read, this.readRows(read, "present"));
     const events = readEvents(read, tables);
     const contacts = head.hasContacts ? readContacts(read, tables) : null;
     if (read.left > 0) read.fail(`found ${read.left} bytes after the last field`);
@@ -132,17 +132,17 @@ export class BlockDecoder {
     };
   }
 
-  private readRows(read: Reader, need: "living" | "new"): Uint32Array {
+  private readRows(read: Reader, state: "present" | "absent"): Uint32Array {
     const rows = read.rows(read.count(1), this.tables.bodies.length);
-    const wanted = need === "living" ? 1 : 0;
+    const expected = state === "present" ? 1 : 0;
     for (const row of rows)
-      if (this.present[row] !== wanted)
-        read.fail(`found body row ${row} ${wanted ? "that does not live" : "that lives already"}`);
+      if (this.present[row] !== expected)
+        read.fail(`found body row ${row} ${expected ? "that is not present" : "that is already present"}`);
     return rows;
   }
 
   private readAdded(read: Reader): void {
-    const rows = this.readRows(read, "new");
+    const rows = this.readRows(read, "absent");
     const flags = read.octets(rows.length);
     for (let i = 0; i < rows.length; ++i) {
       this.present[rows[i]] = 1;
@@ -152,7 +152,7 @@ export class BlockDecoder {
     for (const row of rows) this.islands[row] = read.varuint();
   }
 
-  /** Whole poses: of bodies that are new or that jumped. */
+  /** Reads full poses, of new bodies and of bodies that jumped. */
   private readPoses(read: Reader, rows: Uint32Array): void {
     const n = rows.length;
     for (let axis = 0; axis < 3; ++axis) {
@@ -167,50 +167,50 @@ export class BlockDecoder {
       }
     }
     for (const row of rows) {
-      this.claim(read, row);
-      this.movedIn[row] = -2;
-      this.publish(row);
+      this.markPosed(read, row);
+      this.lastMoved[row] = -2;
+      this.dequantize(row);
     }
   }
 
-  /** What the prediction "as in the frame before" missed. */
+  /** Reads the residuals of the prediction that each body repeats its last step. */
   private readMoves(read: Reader, rows: Uint32Array): void {
     const n = rows.length;
     const { steps, quanta, codes } = this;
     for (const row of rows) {
-      this.claim(read, row);
-      if (this.movedIn[row] !== this.index - 1) steps.fill(0, 6 * row, 6 * row + 6);
-      this.movedIn[row] = this.index;
+      this.markPosed(read, row);
+      if (this.lastMoved[row] !== this.index - 1) steps.fill(0, 6 * row, 6 * row + 6);
+      this.lastMoved[row] = this.index;
     }
     for (let axis = 0; axis < 3; ++axis) {
-      const missed = read.planes16(n);
+      const residuals = read.planes16(n);
       for (let i = 0; i < n; ++i) {
-        const step = (steps[6 * rows[i] + axis] += unzigzag(missed[i]));
+        const step = (steps[6 * rows[i] + axis] += unzigzag(residuals[i]));
         quanta[3 * rows[i] + axis] += step;
       }
     }
     for (let part = 0; part < 3; ++part) {
-      const missed = read.planes16(n);
+      const residuals = read.planes16(n);
       for (let i = 0; i < n; ++i) {
         const row = rows[i];
         const old = codes[3 * row + part];
-        const code = (old + steps[6 * row + 3 + part] + unzigzag(missed[i] & 16383)) & 16383;
+        const code = (old + steps[6 * row + 3 + part] + unzigzag(residuals[i] & 16383)) & 16383;
         const change = code - old;
         steps[6 * row + 3 + part] = change > 8191 ? change - 16384 : change < -8192 ? change + 16384 : change;
         codes[3 * row + part] = code;
-        if (part === 0) this.largest[row] = missed[i] >> 14;
+        if (part === 0) this.largest[row] = residuals[i] >> 14;
       }
     }
-    for (const row of rows) this.publish(row);
+    for (const row of rows) this.dequantize(row);
   }
 
-  private claim(read: Reader, row: number): void {
-    if (this.posedIn[row] === this.index) read.fail(`found body row ${row} posed twice in one frame`);
-    this.posedIn[row] = this.index;
+  private markPosed(read: Reader, row: number): void {
+    if (this.lastPosed[row] === this.index) read.fail(`found body row ${row} posed twice in one frame`);
+    this.lastPosed[row] = this.index;
   }
 
-  /** Turns quanta and codes into metres and a unit quaternion. */
-  private publish(row: number): void {
+  /** Converts quanta and codes to metres and a unit quaternion. */
+  private dequantize(row: number): void {
     const { positions, quanta, rotations, codes } = this;
     const perMetre = this.tables.quantaPerMetre;
     for (let axis = 0; axis < 3; ++axis) positions[3 * row + axis] = quanta[3 * row + axis] / perMetre;

@@ -1,14 +1,14 @@
-/** Reads what the charts show of each frame of a block; steps over the bodies. */
+/** Reads the chart data of each frame of a block; skips the bodies. */
 import type { Summary, Tables } from "../model";
 import { Reader } from "./bytes";
 import { readBlockLayout, readFrameHead } from "./frames";
 
-/** Steps over a row list with `varuints` columns of numbers and `bytes` more a row; returns the number of rows. */
+/** Skips a row list with `varuints` columns of numbers and `bytes` more per row. Returns the number of rows. */
 function skipRows(read: Reader, varuints: number, bytes: number): number {
   const count = read.count(1);
   for (let i = 0; i < count; ++i) read.varuint();
   for (let i = 0; i < count * varuints; ++i) read.varuint();
-  read.take(count * bytes);
+  read.advance(count * bytes);
   return count;
 }
 
@@ -39,13 +39,13 @@ export function readSummaries(raw: Uint8Array, tables: Tables): Summary[] {
 
 function skipPoses(read: Reader): void {
   const count = skipRows(read, 3, 0);
-  read.take(6 * count);
+  read.advance(6 * count);
 }
 
 function readAddedCount(read: Reader): number {
   const count = skipRows(read, 0, 1);
   for (let i = 0; i < 3 * count; ++i) read.varuint();
-  read.take(6 * count);
+  read.advance(6 * count);
   for (let i = 0; i < count; ++i) read.varuint();
   return count;
 }

@@ -1,8 +1,10 @@
-/** Decodes the chunks that describe what is the same in all frames: HEAD, SHAP, MESH, BODY, COLL, CEND, VISU. */
-import type { BodyKind, LocalPose, Quat, Shape, Tables, Triangles, Vec3 } from "../model";
+/** Decodes the chunks that are shared by all frames: HEAD, SHAP, MESH, BODY, COLL, CEND, VISU. */
+import type { BodyKind, LocalPose, Quat, Tables, Vec3 } from "../model";
+import { readShape } from "../shapes/list";
 import { Reader } from "./bytes";
+import { readTriangles } from "./triangles";
 
-const mostRows = 1 << 21;
+const maxRows = 1 << 21;
 
 export function decodeHead(raw: Uint8Array): Tables {
   const read = new Reader(raw, "HEAD");
@@ -12,7 +14,7 @@ export function decodeHead(raw: Uint8Array): Tables {
   const gravity = read.vec3();
   const quantaPerMetre = read.f64();
   if (!(quantaPerMetre > 0 && quantaPerMetre < Infinity))
-    read.fail(`found ${quantaPerMetre} quanta per metre, need above 0`);
+    read.fail(`found ${quantaPerMetre} quanta per metre; expected above 0`);
   const flags = read.u32();
   const texts = () => Array.from({ length: read.count(1) }, () => read.text());
   const stageNames = texts();
@@ -34,29 +36,29 @@ export function decodeHead(raw: Uint8Array): Tables {
   };
 }
 
-/** Adds the rows of one chunk to the tables; a type that is not a table's is left alone. */
+/** Adds the rows of one chunk to the tables. Ignores other chunk types. */
 export function addRows(tables: Tables, type: string, raw: Uint8Array): void {
   const rows = readers[type];
   if (!rows) return;
   const read = new Reader(raw, type);
   const count = read.u32();
   const table = rows.of(tables);
-  if (count * rows.leastBytes > read.left) read.fail(`found ${count} rows, but only ${read.left} bytes follow`);
-  if (table && table.length + count > mostRows) read.fail(`found more than ${mostRows} rows`);
+  if (count * rows.minBytes > read.left) read.fail(`found ${count} rows, but only ${read.left} bytes follow`);
+  if (table && table.length + count > maxRows) read.fail(`found more than ${maxRows} rows`);
   for (let i = 0; i < count; ++i) rows.add(tables, read);
   if (read.left > 0) read.fail(`found ${read.left} bytes after the last row`);
 }
 
 interface RowReader {
-  leastBytes: number;
+  minBytes: number;
   of(tables: Tables): unknown[] | null;
   add(tables: Tables, read: Reader): void;
 }
 
 const readers: Record<string, RowReader> = {
-  SHAP: { leastBytes: 1, of: (t) => t.shapes, add: (t, read) => t.shapes.push(readShape(read)) },
+  SHAP: { minBytes: 1, of: (t) => t.shapes, add: (t, read) => t.shapes.push(readShape(read)) },
   MESH: {
-    leastBytes: 9,
+    minBytes: 9,
     of: (t) => t.meshes,
     add: (t, read) => {
       const vertices = read.u32();
@@ -66,13 +68,13 @@ const readers: Record<string, RowReader> = {
     },
   },
   BODY: {
-    leastBytes: 25,
+    minBytes: 25,
     of: (t) => t.bodies,
     add: (t, read) => {
       const index = read.u32();
       const generation = read.u16();
       const kind = read.u8();
-      if (kind > 2) read.fail(`found body kind ${kind}, need 0 to 2`);
+      if (kind > 2) read.fail(`found body kind ${kind}; expected 0 to 2`);
       read.u8();
       const user = read.u64();
       const mass = read.f32();
@@ -92,10 +94,10 @@ const readers: Record<string, RowReader> = {
     },
   },
   COLL: {
-    leastBytes: 52,
+    minBytes: 52,
     of: (t) => t.colliders,
     add: (t, read) => {
-      read.take(6); // its id in the world
+      read.advance(6); // id in the world
       const flags = read.u8();
       read.u8();
       const body = readRow(read, t.bodies, "body");
@@ -107,7 +109,7 @@ const readers: Record<string, RowReader> = {
     },
   },
   CEND: {
-    leastBytes: 12,
+    minBytes: 12,
     of: () => null,
     add: (t, read) => {
       const collider = readRow(read, t.colliders, "collider");
@@ -115,7 +117,7 @@ const readers: Record<string, RowReader> = {
     },
   },
   VISU: {
-    leastBytes: 40,
+    minBytes: 40,
     of: (t) => t.visuals,
     add: (t, read) => {
       const body = readRow(read, t.bodies, "body");
@@ -130,7 +132,7 @@ const readers: Record<string, RowReader> = {
 
 function readRow(read: Reader, table: unknown[], what: string): number {
   const row = read.u32();
-  if (row >= table.length) read.fail(`found ${what} row ${row}, need below ${table.length}`);
+  if (row >= table.length) read.fail(`found ${what} row ${row}; expected below ${table.length}`);
   return row;
 }
 
@@ -146,45 +148,4 @@ function readPose(read: Reader): LocalPose {
   if (![...position, length].every(Number.isFinite) || length < 0.5)
     read.fail("found a pose that is not finite or has no rotation");
   return { position, rotation: rotation.map((x) => x / length) as Quat };
-}
-
-function readShape(read: Reader): Shape {
-  const kind = read.u8();
-  switch (kind) {
-    case 0:
-      return { kind: "sphere", radius: read.size() };
-    case 1:
-      return { kind: "box", half: [read.size(), read.size(), read.size()] };
-    case 2: {
-      const radius = read.size();
-      const halfLength = read.f32();
-      if (!(halfLength >= 0 && halfLength < Infinity)) read.fail(`found half length ${halfLength}, need 0 or more`);
-      return { kind: "capsule", radius, halfLength };
-    }
-    case 3:
-      return { kind: "cylinder", radius: read.size(), halfHeight: read.size() };
-    case 4:
-    case 6: {
-      const vertices = read.u32();
-      const triangles = read.u32();
-      const mesh = readTriangles(read, vertices, triangles, false);
-      return { kind: kind === 4 ? "convex hull" : "mesh", mesh };
-    }
-    case 5:
-      return { kind: "half-space" };
-    default:
-      return read.fail(`found shape kind ${kind}, need 0 to 6`);
-  }
-}
-
-function readTriangles(read: Reader, vertexCount: number, triangleCount: number, hasNormals: boolean): Triangles {
-  const bytes = vertexCount * (hasNormals ? 24 : 12) + triangleCount * 12;
-  if (bytes > read.left) read.fail(`found a mesh of ${bytes} bytes, but only ${read.left} follow`);
-  const vertices = read.floats(3 * vertexCount);
-  const normals = hasNormals ? read.floats(3 * vertexCount) : null;
-  const triangles = read.words(3 * triangleCount);
-  if (!vertices.every(Number.isFinite)) read.fail("found a vertex that is not finite");
-  if (triangles.some((vertex) => vertex >= vertexCount))
-    read.fail(`found a triangle beyond the ${vertexCount} vertices`);
-  return { vertices, normals, triangles };
 }

@@ -1,41 +1,41 @@
-/** Unpacks the body of a chunk, in slices, so that a long one does not hold up the picture. */
+/** Unpacks the body of a chunk in slices, so that a long one does not block drawing. */
 import { Decompress } from "fzstd";
 import { RecordingError } from "./bytes";
 
 const mebi = 1024 * 1024;
-export const mostRawBytes = 64 * mebi;
-const mostWindow = 8 * mebi;
+export const maxRawBytes = 64 * mebi;
+const maxWindow = 8 * mebi;
 const sliceBytes = 32 * 1024;
 
-/** What stands before the packed bytes of a chunk's body. */
+/** The fields before the packed bytes of a chunk's body. */
 export interface Packing {
   method: number;
   rawLength: number;
   packed: Uint8Array;
 }
 
-/** Reads and checks the packing of a body against the limits of the format; allocates nothing. */
+/** Reads the packing of a body and checks it against the limits of the format. Allocates nothing. */
 export function readPacking(body: Uint8Array, what: string): Packing {
-  if (body.length < 8) throw new RecordingError(`${what}: found a body of ${body.length} bytes, need at least 8`);
+  if (body.length < 8) throw new RecordingError(`${what}: found a body of ${body.length} bytes; expected at least 8`);
   const rawLength = new DataView(body.buffer, body.byteOffset).getUint32(4, true);
   const method = body[0];
   const packed = body.subarray(8);
-  if (method > 1) throw new RecordingError(`${what}: found packing method ${method}, this viewer reads 0 and 1`);
-  const limit = Math.min(mostRawBytes, 4 * mebi + 32 * body.length);
+  if (method > 1) throw new RecordingError(`${what}: found packing method ${method}; expected 0 or 1`);
+  const limit = Math.min(maxRawBytes, 4 * mebi + 32 * body.length);
   if (rawLength > limit) throw new RecordingError(`${what}: expands to ${rawLength} bytes, limit ${limit}`);
   if (method === 0 && rawLength !== packed.length)
-    throw new RecordingError(`${what}: found ${packed.length} bytes, need ${rawLength}`);
+    throw new RecordingError(`${what}: found ${packed.length} bytes; expected ${rawLength}`);
   if (method === 1) checkZstdHeader(packed, rawLength, what);
   return { method, rawLength, packed };
 }
 
-/** A frame's header decides how much memory its decoder takes: look before handing it over. Source: RFC 8878, 3.1.1. */
+/** Checks a zstd header, which decides how much memory the decoder allocates. Source: RFC 8878, 3.1.1. */
 function checkZstdHeader(packed: Uint8Array, rawLength: number, what: string): void {
   const magic = packed.length >= 6 && new DataView(packed.buffer, packed.byteOffset).getUint32(0, true);
   if (magic !== 0xfd2fb528) throw new RecordingError(`${what}: found no zstd frame`);
   const descriptor = packed[4];
   const single = (descriptor & 0x20) !== 0;
-  if (descriptor & 3) throw new RecordingError(`${what}: found a zstd dictionary, need none`);
+  if (descriptor & 3) throw new RecordingError(`${what}: found a zstd dictionary; expected none`);
   let at = 5;
   let window = 0;
   if (!single) {
@@ -47,15 +47,15 @@ function checkZstdHeader(packed: Uint8Array, rawLength: number, what: string): v
   let content = sizeBytes === 2 ? 256 : 0;
   for (let i = 0; i < sizeBytes; ++i) content += (packed[at + i] ?? 0) * 256 ** i;
   if (single) window = content;
-  if (window > Math.max(mostWindow, single ? rawLength : 0))
-    throw new RecordingError(`${what}: found a zstd window of ${window} bytes, limit ${mostWindow}`);
+  if (window > Math.max(maxWindow, single ? rawLength : 0))
+    throw new RecordingError(`${what}: found a zstd window of ${window} bytes, limit ${maxWindow}`);
   if (sizeBytes > 0 && content !== rawLength)
-    throw new RecordingError(`${what}: found ${content} bytes in the zstd frame, need ${rawLength}`);
+    throw new RecordingError(`${what}: found ${content} bytes in the zstd frame; expected ${rawLength}`);
 }
 
 /**
- * Unpacks slice by slice: yields the number of raw bytes so far, returns all of them. `enough` stops early: the result
- * is then shorter. Errors name `what`.
+ * Unpacks in slices: yields the number of raw bytes so far and returns all of them. Stops early after `enough` bytes; the
+ * result is then shorter. Errors name `what`.
  */
 export function* unpackSlices(body: Uint8Array, what: string, enough = Infinity): Generator<number, Uint8Array> {
   const { method, rawLength, packed } = readPacking(body, what);
@@ -78,11 +78,11 @@ export function* unpackSlices(body: Uint8Array, what: string, enough = Infinity)
     yield filled;
   }
   if (filled !== rawLength)
-    throw new RecordingError(`${what}: found ${filled} bytes in the zstd frame, need ${rawLength}`);
+    throw new RecordingError(`${what}: found ${filled} bytes in the zstd frame; expected ${rawLength}`);
   return raw;
 }
 
-/** Runs a generator to its end. */
+/** Runs a generator to its end and returns its result. */
 export function finish<T>(work: Generator<unknown, T>): T {
   for (;;) {
     const step = work.next();
@@ -90,7 +90,7 @@ export function finish<T>(work: Generator<unknown, T>): T {
   }
 }
 
-/** All bytes of a body at once; with `enough`, at least that many of its first. */
+/** Unpacks a body in one call; with `enough`, at least that many of its first bytes. */
 export function unpack(body: Uint8Array, what: string, enough = Infinity): Uint8Array {
   return finish(unpackSlices(body, what, enough));
 }

@@ -1,18 +1,19 @@
-/** Many parts in one draw call: one batch a unit geometry, one for all triangle meshes. */
+/** Draws many parts in one call: one batch per unit geometry, one for all triangle meshes. */
 import { BatchedMesh, Color, InstancedBufferAttribute, InstancedMesh, Matrix4, type Mesh } from "three";
 import type { Triangles } from "../model";
+import { type Form, isTriangles } from "../shapes/traits";
 import { meshGeometry, unitGeometry } from "./geometries";
 import { makeMaterial } from "./materials";
-import type { Form, Part } from "./parts";
+import type { Part } from "./parts";
 
-/** Slots are numbered in the order of the parts that the batch was made from. */
+/** A set of parts drawn in one call. Slots have the order of the parts in the constructor. */
 export interface Batch {
   readonly object: Mesh;
-  /** sixteen numbers by column; all 0 hides the part */
+  /** sixteen numbers in column order; all 0 hides the part */
   setMatrix(slot: number, matrix: Float32Array): void;
-  /** linear light */
+  /** linear RGB */
   setColour(slot: number, colour: Float32Array): void;
-  /** hands what was set to the graphics card */
+  /** uploads the changes to the graphics card */
   flush(): void;
 }
 
@@ -23,7 +24,7 @@ class InstancedBatch implements Batch {
   private moved = false;
   private coloured = false;
 
-  constructor(form: Exclude<Form, "mesh">, sensor: boolean, count: number) {
+  constructor(form: Form, sensor: boolean, count: number) {
     this.object = new InstancedMesh(unitGeometry(form, count), makeMaterial(form, sensor), count);
     this.matrices = this.object.instanceMatrix.array as Float32Array;
     this.matrices.fill(0);
@@ -51,16 +52,16 @@ class MeshBatch implements Batch {
   private readonly colour = new Color();
   private readonly ids: number[];
 
-  constructor(parts: Part[], sensor: boolean) {
+  constructor(parts: Triangles[], sensor: boolean) {
     const meshes = new Map<Triangles, ReturnType<typeof meshGeometry>>();
-    for (const { mesh } of parts) if (mesh && !meshes.has(mesh)) meshes.set(mesh, meshGeometry(mesh));
+    for (const mesh of parts) if (!meshes.has(mesh)) meshes.set(mesh, meshGeometry(mesh));
     let vertices = 0;
     let indices = 0;
     for (const geometry of meshes.values()) {
       vertices += geometry.getAttribute("position").count;
       indices += geometry.index?.count ?? 0;
     }
-    this.object = new BatchedMesh(parts.length, vertices, indices, makeMaterial("mesh", sensor));
+    this.object = new BatchedMesh(parts.length, vertices, indices, makeMaterial(null, sensor));
     this.object.perObjectFrustumCulled = false;
     this.object.sortObjects = false;
     const geometryIds = new Map<Triangles, number>();
@@ -68,7 +69,7 @@ class MeshBatch implements Batch {
       geometryIds.set(mesh, this.object.addGeometry(geometry));
       geometry.dispose();
     }
-    this.ids = parts.map(({ mesh }) => this.object.addInstance(geometryIds.get(mesh as Triangles) as number));
+    this.ids = parts.map((mesh) => this.object.addInstance(geometryIds.get(mesh) as number));
     for (const id of this.ids) this.object.setVisibleAt(id, false);
   }
   setMatrix(slot: number, matrix: Float32Array): void {
@@ -82,11 +83,11 @@ class MeshBatch implements Batch {
   flush(): void {}
 }
 
-/** Sorts parts into batches: the batch and slot of each part, in their order. */
-export function makeBatches(parts: Part[]): { batches: Batch[]; places: { batch: Batch; slot: number }[] } {
+/** Groups parts into batches. Returns the batches, and batch and slot of each part in the order of `parts`. */
+export function makeBatches(parts: Part[]): { batches: Batch[]; slots: { batch: Batch; slot: number }[] } {
   const groups = new Map<string, Part[]>();
-  const slots = parts.map((part) => {
-    const key = `${part.form} ${part.sensor}`;
+  const keys = parts.map((part) => {
+    const key = `${isTriangles(part.form) ? "triangles" : part.form.name} ${part.sensor}`;
     const group = groups.get(key) ?? [];
     groups.set(key, group);
     return { key, slot: group.push(part) - 1 };
@@ -94,7 +95,9 @@ export function makeBatches(parts: Part[]): { batches: Batch[]; places: { batch:
   const made = new Map<string, Batch>();
   for (const [key, group] of groups) {
     const { form, sensor } = group[0];
-    const batch = form === "mesh" ? new MeshBatch(group, sensor) : new InstancedBatch(form, sensor, group.length);
+    const batch = isTriangles(form)
+      ? new MeshBatch(group.map((part) => part.form as Triangles), sensor)
+      : new InstancedBatch(form, sensor, group.length);
     batch.object.castShadow = !sensor;
     batch.object.receiveShadow = !sensor;
     batch.object.frustumCulled = false;
@@ -103,6 +106,6 @@ export function makeBatches(parts: Part[]): { batches: Batch[]; places: { batch:
   }
   return {
     batches: [...made.values()],
-    places: slots.map(({ key, slot }) => ({ batch: made.get(key) as Batch, slot })),
+    slots: keys.map(({ key, slot }) => ({ batch: made.get(key) as Batch, slot })),
   };
 }

@@ -1,4 +1,4 @@
-/** Draws all bodies: places their parts where the poses say and colours them. */
+/** Draws all bodies: sets the matrices and colours of their parts. */
 import { Group } from "three";
 import { type Tables, type Vec3 } from "../model";
 import { type Batch, makeBatches } from "./batch";
@@ -9,8 +9,8 @@ import type { Poses } from "./poses";
 const hidden = new Float32Array(16);
 const poseNumbers = 7;
 
-/** Writes the matrix (by column) of a part on a body; positions are taken relative to `origin`. */
-export function writePartMatrix(out: Float32Array, part: Part, poses: Poses, origin: Vec3, grow = 0): void {
+/** Writes the matrix of a part in column order; positions are relative to `origin`. `margin` enlarges the part, metres. */
+export function writePartMatrix(out: Float32Array, part: Part, poses: Poses, origin: Vec3, margin = 0): void {
   const b = 3 * part.body;
   const r = 4 * part.body;
   const [bx, by, bz, bw] = [poses.rotations[r], poses.rotations[r + 1], poses.rotations[r + 2], poses.rotations[r + 3]];
@@ -23,9 +23,9 @@ export function writePartMatrix(out: Float32Array, part: Part, poses: Poses, ori
   const y = bw * ly - bx * lz + by * lw + bz * lx;
   const z = bw * lz + bx * ly - by * lx + bz * lw;
   const w = bw * lw - bx * lx - by * ly - bz * lz;
-  const sx = part.size[0] + grow;
-  const sy = part.size[1] + grow;
-  const sz = part.size[2] + grow;
+  const sx = part.size[0] + margin;
+  const sy = part.size[1] + margin;
+  const sz = part.size[2] + margin;
   out[0] = (1 - 2 * (y * y + z * z)) * sx;
   out[1] = 2 * (x * y + z * w) * sx;
   out[2] = 2 * (x * z - y * w) * sx;
@@ -46,11 +46,11 @@ export class BodyLayer {
   readonly group = new Group();
   readonly parts: Part[];
   private readonly batches: Batch[];
-  private readonly places: { batch: Batch; slot: number }[];
-  /** what each body's parts were last placed by: seven numbers of its pose */
-  private readonly placed: Float64Array;
+  private readonly slots: { batch: Batch; slot: number }[];
+  /** the last drawn pose of each body, seven numbers */
+  private readonly drawn: Float64Array;
   private readonly shown: Uint8Array;
-  /** colour and shading that each part has now */
+  /** current colour and shading of each part */
   private readonly keys: Int32Array;
   private readonly matrix = new Float32Array(16);
   private readonly colour = new Float32Array(3);
@@ -60,21 +60,21 @@ export class BodyLayer {
     private readonly origin: Vec3,
   ) {
     this.parts = makeParts(tables);
-    const { batches, places } = makeBatches(this.parts);
+    const { batches, slots } = makeBatches(this.parts);
     this.batches = batches;
-    this.places = places;
-    this.placed = new Float64Array(poseNumbers * tables.bodies.length).fill(NaN);
+    this.slots = slots;
+    this.drawn = new Float64Array(poseNumbers * tables.bodies.length).fill(NaN);
     this.shown = new Uint8Array(this.parts.length);
     this.keys = new Int32Array(this.parts.length).fill(-1);
     for (const { object } of batches) this.group.add(object);
   }
 
-  /** Places what moved, came or went since the last call. */
-  place(poses: Poses): void {
+  /** Updates the parts of bodies that moved, appeared or disappeared since the last call. */
+  update(poses: Poses): void {
     const moved = this.findMoved(poses);
     const number = poses.frame?.number ?? 0;
     this.parts.forEach((part, i) => {
-      const { batch, slot } = this.places[i];
+      const { batch, slot } = this.slots[i];
       const show = poses.present[part.body] === 1 && number >= part.from && number < part.to;
       if (!show) {
         if (this.shown[i]) batch.setMatrix(slot, hidden);
@@ -87,7 +87,7 @@ export class BodyLayer {
     for (const batch of this.batches) batch.flush();
   }
 
-  /** Colours all parts as of the frame that is shown. */
+  /** Colours all parts for the shown frame. */
   paint(poses: Poses, by: Colouring): void {
     const { frame } = poses;
     if (!frame) return;
@@ -98,7 +98,7 @@ export class BodyLayer {
       if (key === this.keys[i]) return;
       this.keys[i] = key;
       writeLinear(this.colour, 0, colour, isOwn ? 1 : shadeOf(part.body));
-      const { batch, slot } = this.places[i];
+      const { batch, slot } = this.slots[i];
       batch.setColour(slot, this.colour);
     });
     for (const batch of this.batches) batch.flush();
@@ -106,22 +106,22 @@ export class BodyLayer {
 
   private findMoved(poses: Poses): Uint8Array {
     const moved = new Uint8Array(this.tables.bodies.length);
-    const { placed } = this;
+    const { drawn } = this;
     const { positions, rotations } = poses;
     for (let row = 0, at = 0; row < moved.length; ++row, at += poseNumbers) {
       if (
-        placed[at] === positions[3 * row] &&
-        placed[at + 1] === positions[3 * row + 1] &&
-        placed[at + 2] === positions[3 * row + 2] &&
-        placed[at + 3] === rotations[4 * row] &&
-        placed[at + 4] === rotations[4 * row + 1] &&
-        placed[at + 5] === rotations[4 * row + 2] &&
-        placed[at + 6] === rotations[4 * row + 3]
+        drawn[at] === positions[3 * row] &&
+        drawn[at + 1] === positions[3 * row + 1] &&
+        drawn[at + 2] === positions[3 * row + 2] &&
+        drawn[at + 3] === rotations[4 * row] &&
+        drawn[at + 4] === rotations[4 * row + 1] &&
+        drawn[at + 5] === rotations[4 * row + 2] &&
+        drawn[at + 6] === rotations[4 * row + 3]
       )
         continue;
       moved[row] = 1;
-      for (let i = 0; i < 3; ++i) placed[at + i] = positions[3 * row + i];
-      for (let i = 0; i < 4; ++i) placed[at + 3 + i] = rotations[4 * row + i];
+      for (let i = 0; i < 3; ++i) drawn[at + i] = positions[3 * row + i];
+      for (let i = 0; i < 4; ++i) drawn[at + 3 + i] = rotations[4 * row + i];
     }
     return moved;
   }

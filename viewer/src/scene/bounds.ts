@@ -1,5 +1,6 @@
-/** World boxes of colliders, from shapes and poses. */
-import type { Collider, Frame, Shape, Tables, Vec3 } from "../model";
+/** World boxes of colliders, computed from shapes and poses. */
+import type { Collider, Frame, Tables, Vec3 } from "../model";
+import { type Shape, traitsOf } from "../shapes/list";
 import type { Poses } from "./poses";
 
 export interface Bounds {
@@ -7,14 +8,15 @@ export interface Bounds {
   hi: Vec3;
 }
 
-// Boxes are made for thousands of colliders a picture: these are used again for each.
-const turn = new Float64Array(9);
+// Scratch arrays: thousands of boxes are computed per picture.
+const rotation = new Float64Array(9);
 const centre = new Float64Array(3);
 const below = new Float64Array(3);
 const above = new Float64Array(3);
+const extent = new Float64Array(2);
 
-/** Sets `turn` (by column) and `centre` to the collider's frame in the world. */
-function placeFrame({ body, pose }: Collider, poses: Poses): void {
+/** Sets `rotation` (column order) and `centre` to the collider's frame in the world. */
+function setFrame({ body, pose }: Collider, poses: Poses): void {
   const r = 4 * body;
   const [px, py, pz] = pose.position;
   const [lx, ly, lz, lw] = pose.rotation;
@@ -32,79 +34,52 @@ function placeFrame({ body, pose }: Collider, poses: Poses): void {
   const y = bw * ly - bx * lz + by * lw + bz * lx;
   const z = bw * lz + bx * ly - by * lx + bz * lw;
   const w = bw * lw - bx * lx - by * ly - bz * lz;
-  turn[0] = 1 - 2 * (y * y + z * z);
-  turn[1] = 2 * (x * y + z * w);
-  turn[2] = 2 * (x * z - y * w);
-  turn[3] = 2 * (x * y - z * w);
-  turn[4] = 1 - 2 * (x * x + z * z);
-  turn[5] = 2 * (y * z + x * w);
-  turn[6] = 2 * (x * z + y * w);
-  turn[7] = 2 * (y * z - x * w);
-  turn[8] = 1 - 2 * (x * x + y * y);
+  rotation[0] = 1 - 2 * (y * y + z * z);
+  rotation[1] = 2 * (x * y + z * w);
+  rotation[2] = 2 * (x * z - y * w);
+  rotation[3] = 2 * (x * y - z * w);
+  rotation[4] = 1 - 2 * (x * x + z * z);
+  rotation[5] = 2 * (y * z + x * w);
+  rotation[6] = 2 * (x * z + y * w);
+  rotation[7] = 2 * (y * z - x * w);
+  rotation[8] = 1 - 2 * (x * x + y * y);
 }
 
-/** Sets `below` and `above` to how far the shape reaches from `centre` along the world axes; false: it is endless. */
-function measure(shape: Shape): boolean {
+/** Sets `below` and `above` to the extent of the shape from `centre` along the world axes. Returns false if unbounded. */
+function computeExtent(shape: Shape): boolean {
+  const traits = traitsOf(shape);
   for (let i = 0; i < 3; ++i) {
-    const up = turn[3 + i];
-    switch (shape.kind) {
-      case "sphere":
-        above[i] = shape.radius;
-        break;
-      case "box":
-        above[i] =
-          Math.abs(turn[i]) * shape.half[0] + Math.abs(up) * shape.half[1] + Math.abs(turn[6 + i]) * shape.half[2];
-        break;
-      case "capsule":
-        above[i] = Math.abs(up) * shape.halfLength + shape.radius;
-        break;
-      case "cylinder":
-        above[i] = Math.abs(up) * shape.halfHeight + Math.sqrt(Math.max(0, 1 - up * up)) * shape.radius;
-        break;
-      case "half-space":
-        return false;
-      default: {
-        const { vertices } = shape.mesh;
-        let lo = Infinity;
-        let hi = -Infinity;
-        for (let v = 0; v < vertices.length; v += 3) {
-          const at = turn[i] * vertices[v] + up * vertices[v + 1] + turn[6 + i] * vertices[v + 2];
-          if (at < lo) lo = at;
-          if (at > hi) hi = at;
-        }
-        below[i] = lo;
-        above[i] = hi;
-        continue;
-      }
-    }
-    below[i] = -above[i];
+    traits.extent(shape, rotation[i], rotation[3 + i], rotation[6 + i], extent);
+    if (extent[0] === -Infinity) return false;
+    below[i] = extent[0];
+    above[i] = extent[1];
   }
   return true;
 }
 
 /**
- * Writes the world box of a collider as posed, relative to `origin`, to lo[at…] and hi[at…]; false: it has none
- * (half-space).
+ * Writes the world box of a collider, relative to `origin`, to lo[index…] and hi[index…]. Returns false if the
+ * shape is unbounded.
  */
 export function writeWorldBox(
   lo: Float32Array | Float64Array,
   hi: Float32Array | Float64Array,
-  at: number,
+  index: number,
   tables: Tables,
   collider: Collider,
   poses: Poses,
   origin: Vec3,
 ): boolean {
-  placeFrame(collider, poses);
-  if (!measure(tables.shapes[collider.shape])) return false;
+  setFrame(collider, poses);
+  if (!computeExtent(tables.shapes[collider.shape])) return false;
   for (let i = 0; i < 3; ++i) {
-    lo[at + i] = centre[i] - origin[i] + below[i];
-    hi[at + i] = centre[i] - origin[i] + above[i];
+    lo[index + i] = centre[i] - origin[i] + below[i];
+    hi[index + i] = centre[i] - origin[i] + above[i];
   }
   return true;
 }
 
-/** The world box of a collider as posed; null for a half-space. */
+/** Returns the world box of a collider; null if the shape is unbounded. */
 export function worldBox(tables: Tables, collider: Collider, poses: Poses): Bounds | null {
   const lo = new Float64Array(3);
   const hi = new Float64Array(3);
@@ -112,6 +87,6 @@ export function worldBox(tables: Tables, collider: Collider, poses: Poses): Boun
   return { lo: [...lo] as Vec3, hi: [...hi] as Vec3 };
 }
 
-/** Is the collider there at the frame? */
-export const isThere = (collider: Collider, frame: Frame): boolean =>
+/** Whether the collider exists at the frame. */
+export const existsAt = (collider: Collider, frame: Frame): boolean =>
   frame.present[collider.body] === 1 && frame.number >= collider.from && frame.number < collider.to;

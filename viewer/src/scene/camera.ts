@@ -1,4 +1,4 @@
-/** The camera: orbits by mouse and touch, frames the scene, follows a body. */
+/** The camera: orbits by mouse and touch, fits the scene, follows a body. */
 import { PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../model";
@@ -9,7 +9,7 @@ const margin = 1.06;
 export class Camera {
   readonly eye = new PerspectiveCamera(40, 1, 0.1, 1000);
   private readonly controls: OrbitControls;
-  private free = 1;
+  private visibleShare = 1;
   private followed: Vector3 | null = null;
 
   constructor(canvas: HTMLCanvasElement, onChange: () => void) {
@@ -28,28 +28,28 @@ export class Camera {
     return this.eye.position.distanceTo(this.controls.target);
   }
 
-  /** Fits the picture into a window of which panels cover `below` pixels at the bottom: its middle is above them. */
+  /** Resizes to a window whose bottom `below` pixels are covered by panels; centres the picture above them. */
   resize(width: number, height: number, below: number): void {
     this.eye.aspect = width / Math.max(1, height);
-    this.free = 1 - below / Math.max(1, height);
+    this.visibleShare = 1 - below / Math.max(1, height);
     this.eye.setViewOffset(width, height, 0, below / 2, width, height);
     this.eye.updateProjectionMatrix();
   }
 
-  /** Looks from a little above at a box of half sizes `half` around `centre`: it fills what is free of the window. */
+  /** Views a box (centre, half extents) from slightly above, so that it fills the visible part of the window. */
   frame(centre: Vector3, half: Vector3): void {
     const up = new Vector3(0, 1, 0);
     const right = up.clone().cross(from).normalize();
     const above = from.clone().cross(right);
-    const tall = Math.tan((this.eye.fov * Math.PI) / 360) * this.free;
+    const tall = Math.tan((this.eye.fov * Math.PI) / 360) * this.visibleShare;
     const wide = Math.tan((this.eye.fov * Math.PI) / 360) * this.eye.aspect;
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-      const towards = at.dot(from);
+      const point = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+      const towards = point.dot(from);
       distance = Math.max(
         distance,
-        towards + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall) * margin,
+        towards + Math.max(Math.abs(point.dot(right)) / wide, Math.abs(point.dot(above)) / tall) * margin,
       );
     }
     this.controls.target.copy(centre);
@@ -59,20 +59,20 @@ export class Camera {
     this.controls.update();
   }
 
-  /** Goes along with a point from now on; null: stays. */
-  follow(at: Vector3 | null): void {
-    this.followed = at?.clone() ?? null;
+  /** Starts to follow a point; null: stops. */
+  follow(point: Vector3 | null): void {
+    this.followed = point?.clone() ?? null;
   }
-  /** Where the followed point is now. */
-  moveFollowed(at: Vector3): void {
+  /** Updates the followed point. */
+  moveFollowed(point: Vector3): void {
     if (!this.followed) return;
-    const step = at.clone().sub(this.followed);
+    const step = point.clone().sub(this.followed);
     this.eye.position.add(step);
     this.controls.target.add(step);
-    this.followed.copy(at);
+    this.followed.copy(point);
   }
 
-  /** Swings on after a drag. True while the camera still moves. */
+  /** Applies damping after a drag. Returns true while the camera still moves. */
   update(): boolean {
     const { eye } = this;
     const distance = this.distance;
@@ -87,16 +87,16 @@ export class Camera {
   }
 
   /** Eye and target, six numbers. */
-  get place(): number[] {
+  get eyeAndTarget(): number[] {
     return [...this.eye.position.toArray(), ...this.controls.target.toArray()];
   }
-  set place(numbers: number[]) {
+  set eyeAndTarget(numbers: number[]) {
     this.eye.position.fromArray(numbers);
     this.controls.target.fromArray(numbers, 3);
     this.controls.update();
   }
 
-  /** The ray through a point of the canvas, given from -1 to 1 (right, up). */
+  /** Returns the ray through a point of the canvas, given as -1 to 1 (right, up). */
   ray(x: number, y: number): { origin: Vec3; direction: Vec3 } {
     this.eye.updateMatrixWorld();
     const origin = this.eye.position;

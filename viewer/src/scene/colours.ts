@@ -1,4 +1,4 @@
-/** Which colour a body has, and the legend that explains it. */
+/** The colours of bodies, and their legend. */
 import { type BodyKind, type Frame, flagAwake, flagBroken, kindOf, noIsland } from "../model";
 import { hash01 } from "./maths";
 
@@ -14,14 +14,14 @@ const palette = {
   asleep: 0x5b7ea8,
   broken: 0xe0457b,
 };
-/** What a body without a colour of its own is made of: quiet stone and clay tones. */
+/** Default colours of dynamic bodies: stone and clay tones. */
 const clay = [0xe3d3b5, 0xd9c39c, 0xd8b898, 0xe6dcc8, 0xcbb592, 0xdcbf8a];
 const kindColours: Record<BodyKind, number> = { 0: palette.static, 1: palette.kinematic, 2: palette.dynamic };
 
 const toLinear = (c: number) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
 const linear = Float32Array.from({ length: 256 }, (_, i) => toLinear(i / 255));
 
-/** A colour of full light for a number, well spread round the wheel (golden angle). */
+/** Returns a bright colour for a number; consecutive numbers are far apart on the colour wheel (golden angle). */
 function wheel(n: number): number {
   const hue = (n * 0.61803398875) % 1;
   const value = 0.74 + 0.22 * hash01(n + 7);
@@ -33,7 +33,7 @@ function wheel(n: number): number {
   return (channel(5) << 16) | (channel(3) << 8) | channel(1);
 }
 
-/** The sRGB colour of a body (its part's own colour is `own`) at a frame. */
+/** Returns the sRGB colour of a body at a frame; `own`: the colour of its part, or null. */
 export function colourOf(row: number, own: number | null, frame: Frame, by: Colouring): number {
   const flags = frame.flags[row];
   if (by === "material") {
@@ -52,14 +52,14 @@ export function colourOf(row: number, own: number | null, frame: Frame, by: Colo
   return wheel(island);
 }
 
-/** Writes a colour as linear light, made a little lighter or darker by `shade` (1: as it is). */
-export function writeLinear(out: Float32Array, at: number, colour: number, shade: number): void {
-  out[at] = linear[(colour >> 16) & 255] * shade;
-  out[at + 1] = linear[(colour >> 8) & 255] * shade;
-  out[at + 2] = linear[colour & 255] * shade;
+/** Writes a colour as linear RGB, scaled by `shade` (1: unchanged). */
+export function writeLinear(out: Float32Array, index: number, colour: number, shade: number): void {
+  out[index] = linear[(colour >> 16) & 255] * shade;
+  out[index + 1] = linear[(colour >> 8) & 255] * shade;
+  out[index + 2] = linear[colour & 255] * shade;
 }
 
-/** Neighbours of one colour are told apart by a touch of light. */
+/** A small random brightness per body, so that neighbours of the same colour can be distinguished. */
 export const shadeOf = (row: number): number => 0.9 + 0.2 * hash01(row * 2 + 1);
 
 export interface LegendKey {
@@ -82,7 +82,7 @@ export function legendOf(by: Colouring): LegendKey[] {
       ];
     case "island":
       return [
-        { name: "a colour an island", colour: wheel(5) },
+        { name: "one colour per island", colour: wheel(5) },
         { name: "none or asleep", colour: 0x8791a0 },
         { name: "static", colour: palette.static },
       ];

@@ -1,4 +1,4 @@
-/** Draws contact points as dots with a line along the normal; the colour says how hard they press. */
+/** Draws contact points as dots with a line along the normal; the colour shows the impulse. */
 import {
   BufferAttribute,
   BufferGeometry,
@@ -18,9 +18,9 @@ export class ContactLayer {
   readonly group = new Group();
   private readonly dots = new BufferGeometry();
   private readonly lines = new BufferGeometry();
-  private room = 0;
+  private capacity = 0;
 
-  /** `length` of the normals in metres. */
+  /** `length`: of the normals, metres. */
   constructor(
     private readonly origin: Vec3,
     private readonly length: number,
@@ -52,20 +52,20 @@ export class ContactLayer {
     if (!this.group.visible) return;
     const contacts = frame.contacts;
     const count = contacts?.impulses.length ?? 0;
-    if (count > this.room || this.room === 0) this.makeRoom(Math.max(256, 2 * count));
+    if (count > this.capacity || this.capacity === 0) this.reserve(Math.max(256, 2 * count));
     const dots = this.dots.attributes.position.array as Float32Array;
     const dotColours = this.dots.attributes.color.array as Float32Array;
     const ends = this.lines.attributes.position.array as Float32Array;
     const endColours = this.lines.attributes.color.array as Float32Array;
-    let most = 0;
-    for (let i = 0; i < count; ++i) most = Math.max(most, contacts?.impulses[i] ?? 0);
+    let maxImpulse = 0;
+    for (let i = 0; i < count; ++i) maxImpulse = Math.max(maxImpulse, contacts?.impulses[i] ?? 0);
     for (let i = 0; contacts && i < count; ++i) {
-      const share = most > 0 ? Math.sqrt(contacts.impulses[i] / most) : 0;
+      const share = maxImpulse > 0 ? Math.sqrt(contacts.impulses[i] / maxImpulse) : 0;
       const colour = heat[Math.min(heat.length - 1, Math.floor(share * heat.length))] ?? heat[0];
       for (let k = 0; k < 3; ++k) {
-        const at = contacts.points[3 * i + k] - this.origin[k];
-        dots[3 * i + k] = ends[6 * i + k] = at;
-        ends[6 * i + 3 + k] = at + contacts.normals[3 * i + k] * this.length * (0.4 + share);
+        const x = contacts.points[3 * i + k] - this.origin[k];
+        dots[3 * i + k] = ends[6 * i + k] = x;
+        ends[6 * i + 3 + k] = x + contacts.normals[3 * i + k] * this.length * (0.4 + share);
       }
       writeLinear(dotColours, 3 * i, colour, 1);
       writeLinear(endColours, 6 * i, colour, 1);
@@ -77,9 +77,9 @@ export class ContactLayer {
       for (const name of ["position", "color"]) geometry.attributes[name].needsUpdate = true;
   }
 
-  private makeRoom(count: number): void {
-    this.room = count;
-    for (const [geometry, each] of [
+  private reserve(count: number): void {
+    this.capacity = count;
+    for (const [geometry, pointsEach] of [
       [this.dots, 1],
       [this.lines, 2],
     ] as const) {
@@ -87,7 +87,7 @@ export class ContactLayer {
       for (const name of ["position", "color"])
         geometry.setAttribute(
           name,
-          new BufferAttribute(new Float32Array(3 * each * count), 3).setUsage(DynamicDrawUsage),
+          new BufferAttribute(new Float32Array(3 * pointsEach * count), 3).setUsage(DynamicDrawUsage),
         );
     }
   }

@@ -1,26 +1,13 @@
 /** The unit geometries of forms, and three.js geometry of triangle meshes. */
-import { BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, SphereGeometry } from "three";
+import { BufferAttribute, BufferGeometry } from "three";
 import type { Triangles } from "../model";
-import type { Form } from "./parts";
+import type { Form } from "../shapes/traits";
 
-/** Unit geometry, finer when few are drawn. */
-export function unitGeometry(form: Exclude<Form, "mesh">, count: number): BufferGeometry {
-  const around = count > 4000 ? 14 : count > 800 ? 20 : 32;
-  switch (form) {
-    case "ball":
-      return new SphereGeometry(1, around, around * 0.625);
-    case "block":
-      return new BoxGeometry(2, 2, 2);
-    case "drum":
-      return new CylinderGeometry(1, 1, 2, around);
-    case "tube":
-      return new CylinderGeometry(1, 1, 2, around, 1, true);
-    case "cap":
-      return new SphereGeometry(1, around, around * 0.3125, 0, Math.PI * 2, 0, Math.PI / 2);
-  }
-}
+/** Returns the geometry of a form, finer for small counts. */
+export const unitGeometry = (form: Form, count: number): BufferGeometry =>
+  form.geometry(count > 4000 ? 14 : count > 800 ? 20 : 32);
 
-/** A mesh with normals: its own, or flat ones (each triangle then has corners of its own). */
+/** Returns a mesh with its normals, or with flat normals (then triangles share no vertices). */
 export function meshGeometry({ vertices, normals, triangles }: Triangles): BufferGeometry {
   const geometry = new BufferGeometry();
   if (normals) {

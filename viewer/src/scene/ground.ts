@@ -1,7 +1,7 @@
-/** The ground: a wide plane with a fine grid that fades with distance. Solid where the recording has a half-space. */
+/** The ground: a large plane with a grid that fades with distance. Solid where the recording has a half-space. */
 import { DoubleSide, type Matrix4, Mesh, MeshStandardMaterial, PlaneGeometry } from "three";
 
-const least = 3000;
+const minReach = 3000; // metres
 
 const gridHead = /* glsl */ `
 varying vec2 vGrid;
@@ -19,9 +19,9 @@ float coarse = gridLines(vGrid, gridCell * 10.0);
 diffuseColor.rgb *= 0.82 + 0.3 * exp(-dot(middle, middle));
 diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.85, 0.93, 1.0), 0.08 * fine + 0.15 * coarse);
 `;
-const airyAlpha = /* glsl */ `diffuseColor.a = 0.05 + 0.35 * max(fine, coarse);`;
+const lineAlpha = /* glsl */ `diffuseColor.a = 0.05 + 0.35 * max(fine, coarse);`;
 
-/** `solid`: opaque; else lines in the air, in scenes without ground. Lines every `cell` m; lighter within `glow` m. */
+/** Creates the ground. `solid`: opaque; else only lines, for scenes without ground. Lines every `cell` m; lighter within `glow` m. */
 export function makeGround(matrix: Matrix4, solid: boolean, cell: number, glow: number): Mesh {
   const material = new MeshStandardMaterial({ color: 0x76838f, roughness: 0.95, metalness: 0 });
   if (!solid) {
@@ -37,14 +37,14 @@ export function makeGround(matrix: Matrix4, solid: boolean, cell: number, glow: 
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvGrid = position.xz;");
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\nuniform float gridCell, glow;\n${gridHead}`)
-      .replace("#include <color_fragment>", `#include <color_fragment>\n${gridBody}\n${solid ? "" : airyAlpha}`);
+      .replace("#include <color_fragment>", `#include <color_fragment>\n${gridBody}\n${solid ? "" : lineAlpha}`);
   };
   material.customProgramCacheKey = () => `fase-ground-${solid}`;
-  // A lawn or floor that lies on the ground is seen, not the ground.
+  // Surfaces at the height of the ground hide it.
   material.polygonOffset = true;
   material.polygonOffsetFactor = 4;
   material.polygonOffsetUnits = 16;
-  const reach = Math.max(least, 20 * glow);
+  const reach = Math.max(minReach, 20 * glow);
   const geometry = new PlaneGeometry(2 * reach, 2 * reach, 1, 1);
   geometry.rotateX(-Math.PI / 2);
   const ground = new Mesh(geometry, material);

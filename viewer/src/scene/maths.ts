@@ -11,7 +11,7 @@ export const cross = (a: Vec3, b: Vec3): Vec3 => [
   a[0] * b[1] - a[1] * b[0],
 ];
 
-/** The vector turned by the rotation. */
+/** Rotates a vector. */
 export function rotate([x, y, z, w]: Quat, v: Vec3): Vec3 {
   const t = scale(cross([x, y, z], v), 2);
   return add(add(v, scale(t, w)), cross([x, y, z], t));
@@ -23,13 +23,13 @@ export const multiply = ([ax, ay, az, aw]: Quat, [bx, by, bz, bw]: Quat): Quat =
   aw * bz + ax * by - ay * bx + az * bw,
   aw * bw - ax * bx - ay * by - az * bz,
 ];
-/** `inner`, given in the frame `outer`, in the frame that `outer` is given in. */
+/** Returns the pose `inner`, given relative to `outer`, in the frame of `outer`'s parent. */
 export const combine = (outer: LocalPose, inner: LocalPose): LocalPose => ({
   position: add(outer.position, rotate(outer.rotation, inner.position)),
   rotation: multiply(outer.rotation, inner.rotation),
 });
 
-/** A repeatable number in [0, 1) for each whole number. */
+/** Returns a pseudo-random number in [0, 1) for an integer; the same in each run. */
 export function hash01(n: number): number {
   let h = Math.imul(n ^ (n >>> 16), 0x45d9f3b);
   h = Math.imul(h ^ (h >>> 16), 0x45d9f3b);

@@ -1,11 +1,11 @@
-/** The poses that are on the screen now: two frames mixed, by body row. */
+/** The displayed poses by body row, interpolated between two frames. */
 import { type Frame, flagAwake } from "../model";
 
 export class Poses {
   readonly present: Uint8Array;
   readonly positions: Float64Array;
   readonly rotations: Float32Array;
-  /** the frame that the mix begins at: flags, islands and events are its */
+  /** the first of the two frames; flags, islands and events come from it */
   frame: Frame | null = null;
 
   constructor(readonly count: number) {
@@ -18,7 +18,7 @@ export class Poses {
     return this.frame !== null && (this.frame.flags[row] & flagAwake) !== 0;
   }
 
-  /** Sets all poses to `share` (0 to 1) of the way from frame `a` to `b`; bodies that b lacks stay where a has them. */
+  /** Interpolates all poses from frame `a` (share 0) to `b` (share 1). Bodies that are missing in b keep the pose in a. */
   mix(a: Frame, b: Frame, share: number): void {
     this.frame = a;
     this.present.set(a.present);

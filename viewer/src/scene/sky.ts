@@ -1,4 +1,4 @@
-/** The sky: a soft gradient round the whole scene, lighter at the horizon, where the fog meets it. */
+/** The sky: a gradient around the scene, lighter at the horizon, where it blends with the fog. */
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry } from "three";
 
 export const horizon = new Color(0xbccbdb);
@@ -27,7 +27,7 @@ export function makeSky(): Mesh {
                 float up = normalize(vDirection).y;
                 float away = 1.0 - pow(1.0 - abs(up), up > 0.0 ? 2.6 : 8.0);
                 vec3 colour = mix(horizon, up > 0.0 ? zenith : below, away);
-                // a touch of noise hides the bands of 8-bit colour
+                // noise hides the banding of 8-bit colour
                 float noise = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453);
                 gl_FragColor = vec4(colour + (noise - 0.5) / 255.0, 1.0);
                 #include <colorspace_fragment>

@@ -1,4 +1,4 @@
-/** Renderer, light, sky and ground: all that is on the stage but the actors. */
+/** Renderer, lights, sky and fog: everything except the bodies and overlays. */
 import {
   DirectionalLight,
   Fog,
@@ -25,7 +25,7 @@ export class Stage {
   private drawnShare = 0;
   private readonly fog = new Fog(horizon, 60, 400);
 
-  /** Throws when the browser has no WebGL 2; with `isSoftware`, pictures are made with less work. */
+  /** Throws when the browser has no WebGL 2. `isSoftware`: uses cheaper settings. */
   constructor(
     canvas: HTMLCanvasElement,
     private readonly isSoftware: boolean,
@@ -60,12 +60,12 @@ export class Stage {
     this.drawnShare = 0;
   }
 
-  /** Was the last picture drawn with fewer pixels than the screen has? */
+  /** Whether the last picture had fewer pixels than the screen. */
   get isCoarse(): boolean {
     return this.drawnShare < 1;
   }
 
-  /** Draws one picture with a `share` of the screen's pixels each way; shadows are sharp within `radius` of `focus`. */
+  /** Draws one picture with a `share` of the screen's pixels per direction; shadows are sharp within `radius` of `focus`. */
   render(camera: PerspectiveCamera, share: number, focus: Vector3, radius: number, distance: number): void {
     if (share !== this.drawnShare) {
       this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, this.isSoftware ? 1 : 2));
@@ -78,7 +78,7 @@ export class Stage {
     this.renderer.render(this.scene, camera);
   }
 
-  /** Moves the shadow's window in whole texels, so that edges do not crawl when the camera follows. */
+  /** Moves the shadow map in full texels, so that shadow edges stay stable while the camera follows a body. */
   private aimSun(focus: Vector3, radius: number): void {
     const { shadow } = this.sun;
     const { camera } = shadow;

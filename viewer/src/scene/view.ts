@@ -1,6 +1,7 @@
-/** The picture of a recording: stage, bodies, overlays and camera, drawn from poses. */
+/** The view of a recording: stage, bodies, overlays and camera. */
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Frame, Tables, Vec3 } from "../model";
+import { traitsOf } from "../shapes/list";
 import { BodyLayer } from "./bodies";
 import type { Bounds } from "./bounds";
 import { Camera } from "./camera";
@@ -61,7 +62,7 @@ export class View {
     this.camera = new Camera(canvas, onChange);
   }
 
-  /** `below`: pixels that panels cover at the bottom. */
+  /** `below`: pixels at the bottom that panels cover. */
   resize(width: number, height: number, below: number): void {
     this.width = width;
     this.height = height;
@@ -69,15 +70,15 @@ export class View {
     this.camera.resize(width, height, below);
   }
 
-  /** Looks at everything. */
+  /** Shows the full scene. */
   reframe(): void {
     this.camera.frame(this.centre, this.half);
   }
 
-  /** Shows the mix of two frames. */
+  /** Shows the interpolation of two frames. */
   show(a: Frame, b: Frame, share: number): void {
     this.poses.mix(a, b, share);
-    this.bodies.place(this.poses);
+    this.bodies.update(this.poses);
     this.boxes.update(this.poses);
     this.contacts.update(a);
     this.highlight.update(this.poses, this.camera.eye);
@@ -85,18 +86,18 @@ export class View {
     if (painted !== this.painted) this.bodies.paint(this.poses, this.colouring);
     this.painted = painted;
     if (this.followed !== null && this.poses.present[this.followed])
-      this.camera.moveFollowed(this.placeOf(this.followed));
+      this.camera.moveFollowed(this.positionOf(this.followed));
   }
 
-  /** Draws one picture with a share of the screen's pixels. True while the camera still swings and wants another. */
+  /** Draws one picture with a share of the screen's pixels. Returns true while the camera still moves. */
   draw(share = 1): boolean {
-    const swings = this.camera.update();
+    const isMoving = this.camera.update();
     this.highlight.update(this.poses, this.camera.eye);
     const { target, distance } = this.camera;
     const near = target.distanceTo(this.centre) < 2 * this.radius && distance > this.radius;
     const focus = near ? this.centre : target;
     this.stage.render(this.camera.eye, share, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
-    return swings;
+    return isMoving;
   }
 
   get isCoarse(): boolean {
@@ -112,13 +113,13 @@ export class View {
     if (this.poses.frame) this.contacts.update(this.poses.frame);
   }
 
-  /** The body under a point of the window, in CSS pixels; null: none, or the ground. */
+  /** Returns the body at a point of the window, in CSS pixels; null: none, or the ground. */
   pickAt(x: number, y: number): Picked | null {
     const ray = this.camera.ray((2 * x) / this.width - 1, 1 - (2 * y) / this.height);
     const origin = ray.origin.map((c, i) => c + this.origin[i]) as Vec3;
     const picked = pick(this.tables, this.poses, { origin, direction: ray.direction });
     if (!picked) return null;
-    return this.tables.shapes[this.tables.colliders[picked.collider].shape].kind === "half-space" ? null : picked;
+    return traitsOf(this.tables.shapes[this.tables.colliders[picked.collider].shape]).isGround ? null : picked;
   }
   select(row: number | null): void {
     this.picked = row;
@@ -128,31 +129,31 @@ export class View {
   get selected(): number | null {
     return this.picked;
   }
-  /** Lets the camera go along with a body; null: stays. */
+  /** Makes the camera follow a body; null: stops. */
   follow(row: number | null): void {
     this.followed = row;
-    this.camera.follow(row === null ? null : this.placeOf(row));
+    this.camera.follow(row === null ? null : this.positionOf(row));
   }
 
-  /** Where a point of the world is in the window, in CSS pixels. */
+  /** Returns the window position of a world point, in CSS pixels. */
   project(point: Vec3): { x: number; y: number } {
-    const at = new Vector3(...point).sub(new Vector3(...this.origin));
+    const projected = new Vector3(...point).sub(new Vector3(...this.origin));
     this.camera.eye.updateMatrixWorld();
-    at.project(this.camera.eye);
-    return { x: ((at.x + 1) / 2) * this.width, y: ((1 - at.y) / 2) * this.height };
+    projected.project(this.camera.eye);
+    return { x: ((projected.x + 1) / 2) * this.width, y: ((1 - projected.y) / 2) * this.height };
   }
 
-  private placeOf(row: number): Vector3 {
+  private positionOf(row: number): Vector3 {
     return new Vector3().fromArray(this.poses.positions, 3 * row).sub(new Vector3(...this.origin));
   }
 
-  /** Solid ground for each half-space of a static body; lines in the air under a scene that has none. */
+  /** Adds solid ground for each shape that is ground; a grid of lines below scenes without one. */
   private addGround(bounds: Bounds): void {
     const cell = 10 ** Math.max(-1, Math.round(Math.log10(this.radius / 8)));
     const { tables, poses } = this;
     let found = false;
     for (const { body, shape, pose } of tables.colliders) {
-      if (tables.shapes[shape].kind !== "half-space" || !poses.present[body]) continue;
+      if (!traitsOf(tables.shapes[shape]).isGround || !poses.present[body]) continue;
       const world = combine(
         {
           position: Array.from(poses.positions.subarray(3 * body, 3 * body + 3)) as Vec3,
@@ -161,21 +162,21 @@ export class View {
         pose,
       );
       found = true;
-      const turn = new Quaternion(...world.rotation);
-      const up = new Vector3(0, 1, 0).applyQuaternion(turn);
-      const at = new Vector3(...world.position).sub(new Vector3(...this.origin));
-      // the plane is endless: draw it round the point next to the scene, so that its grid stays fine
-      const near = this.centre.clone().addScaledVector(up, -this.centre.clone().sub(at).dot(up));
-      const snapped = at.add(
+      const rotation = new Quaternion(...world.rotation);
+      const up = new Vector3(0, 1, 0).applyQuaternion(rotation);
+      const position = new Vector3(...world.position).sub(new Vector3(...this.origin));
+      // the plane is unbounded: draw it around the point nearest to the scene, where its grid is precise
+      const near = this.centre.clone().addScaledVector(up, -this.centre.clone().sub(position).dot(up));
+      const snapped = position.add(
         near
-          .sub(at)
+          .sub(position)
           .multiplyScalar(1 / (10 * cell))
           .round()
           .multiplyScalar(10 * cell)
           .projectOnPlane(up),
       );
       this.stage.add(
-        makeGround(new Matrix4().compose(snapped, turn, new Vector3(1, 1, 1)), true, cell, 2.5 * this.radius),
+        makeGround(new Matrix4().compose(snapped, rotation, new Vector3(1, 1, 1)), true, cell, 2.5 * this.radius),
       );
     }
     if (found) return;

@@ -1,8 +1,8 @@
-/** What the browser can draw with. */
+/** Detects how the browser can draw. */
 
 export type Drawing = "none" | "software" | "hardware";
 
-/** Looks before the scene is made: no WebGL 2, one that the processor emulates, or a graphics card. */
+/** Returns none (no WebGL 2), software (emulated by the processor) or hardware. */
 export function probeDrawing(): Drawing {
   const context = document.createElement("canvas").getContext("webgl2");
   if (!context) return "none";

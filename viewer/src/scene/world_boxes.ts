@@ -8,13 +8,13 @@ import {
   ShaderMaterial,
 } from "three";
 import { flagAwake, kindOf, type Tables, type Vec3 } from "../model";
-import { isThere, writeWorldBox } from "./bounds";
+import { existsAt, writeWorldBox } from "./bounds";
 import { writeLinear } from "./colours";
 import type { Poses } from "./poses";
 
 const awake = 0x6ff2e0;
 const asleep = 0x86a9d8;
-const fixed = 0xb9c2cc;
+const still = 0xb9c2cc;
 
 /** The 12 edges of the unit cube. */
 function cubeEdges(): Float32Array {
@@ -73,7 +73,7 @@ export class WorldBoxes {
     this.object.renderOrder = 4;
   }
 
-  /** Nothing is computed while hidden. */
+  /** Does nothing while hidden. */
   update(poses: Poses): void {
     const { frame } = poses;
     if (!this.object.visible || !frame) return;
@@ -81,15 +81,15 @@ export class WorldBoxes {
     const hi = this.hi.array as Float32Array;
     let count = 0;
     for (const collider of this.tables.colliders) {
-      if (!isThere(collider, frame)) continue;
+      if (!existsAt(collider, frame)) continue;
       if (!writeWorldBox(lo, hi, 3 * count, this.tables, collider, poses, this.origin)) continue;
       const flags = frame.flags[collider.body];
-      const colour = kindOf(flags) === 0 ? fixed : flags & flagAwake ? awake : asleep;
+      const colour = kindOf(flags) === 0 ? still : flags & flagAwake ? awake : asleep;
       writeLinear(this.colour.array as Float32Array, 3 * count, colour, 1);
       ++count;
     }
     this.geometry.instanceCount = count;
-    this.opacity.value = Math.max(0.4, Math.min(0.85, 14 / Math.sqrt(count + 1))); // many lines: thinner ones
+    this.opacity.value = Math.max(0.4, Math.min(0.85, 14 / Math.sqrt(count + 1))); // fainter when there are many lines
     this.lo.needsUpdate = this.hi.needsUpdate = this.colour.needsUpdate = true;
   }
 }

@@ -1,17 +1,17 @@
-/** A chart over all frames, stacked or as lines, with a cursor at the current frame and one under the pointer. */
+/** A chart over all frames, stacked or lines, with a cursor at the current frame and one at the pointer. */
 import { cssColour, sharpContext } from "./dom";
 
 export interface Series {
   name: string;
   colour: number;
-  /** one number a frame; grows while the recording is being read */
+  /** one number per frame; grows while the recording is being read */
   values: number[];
 }
 export type ChartKind = "stacked" | "lines";
 
 const padTop = 12;
 
-/** The value that all but `share` of the values stay below. */
+/** Returns the value that all but `share` of the values do not exceed. */
 function highValue(values: number[], share: number): number {
   const sorted = Float64Array.from(values).sort();
   return sorted[Math.floor((sorted.length - 1) * (1 - share))] ?? 0;
@@ -50,7 +50,7 @@ export class Chart {
       });
   }
 
-  /** The values or the size changed: the next draw() starts afresh. */
+  /** Marks values or size as changed: the next draw() redraws everything. */
   refresh(): void {
     this.isStale = true;
   }
@@ -94,7 +94,7 @@ export class Chart {
     const frames = Math.min(...this.series.map(({ values }) => values.length));
     if (!Number.isFinite(frames) || frames === 0) return;
     const columns = this.columns(frames, width);
-    const room = height - padTop;
+    const plotHeight = height - padTop;
     if (this.kind === "stacked") {
       const totals = columns.map((frame) => this.series.reduce((sum, { values }) => sum + values[frame], 0));
       const top = Math.max(1e-6, highValue(totals, 0.01) * 1.1);
@@ -106,29 +106,29 @@ export class Chart {
           [top, `${round(top)} ms`],
           [top / 2, ""],
         ],
-        (v) => height - (v / top) * room,
+        (v) => height - (v / top) * plotHeight,
       );
       const floor = new Array<number>(columns.length).fill(0);
       for (const { colour, values } of this.series) {
         context.fillStyle = cssColour(colour);
         context.beginPath();
-        columns.forEach((frame, i) => context.lineTo(this.xOf(frame, width), height - (floor[i] / top) * room));
+        columns.forEach((frame, i) => context.lineTo(this.xOf(frame, width), height - (floor[i] / top) * plotHeight));
         for (let i = columns.length - 1; i >= 0; --i) {
           floor[i] += values[columns[i]];
-          context.lineTo(this.xOf(columns[i], width), height - (floor[i] / top) * room);
+          context.lineTo(this.xOf(columns[i], width), height - (floor[i] / top) * plotHeight);
         }
         context.fill();
       }
       return;
     }
-    const most = Math.max(
+    const maxValue = Math.max(
       1,
       ...this.series.map(({ values }) => columns.reduce((m, frame) => Math.max(m, values[frame]), 0)),
     );
-    const top = Math.log10(1 + most) * 1.04;
-    const y = (value: number) => height - 1 - (Math.log10(1 + value) / top) * (room - 2);
+    const top = Math.log10(1 + maxValue) * 1.04;
+    const y = (value: number) => height - 1 - (Math.log10(1 + value) / top) * (plotHeight - 2);
     const marks: [number, string][] = [];
-    for (let mark = 10; mark <= most; mark *= 10) marks.push([mark, mark >= 1000 ? `${mark / 1000}k` : `${mark}`]);
+    for (let mark = 10; mark <= maxValue; mark *= 10) marks.push([mark, mark >= 1000 ? `${mark / 1000}k` : `${mark}`]);
     this.drawScale(context, width, height, marks, y);
     for (const { colour, values } of this.series) {
       context.strokeStyle = cssColour(colour);
@@ -140,14 +140,14 @@ export class Chart {
     }
   }
 
-  /** One frame for each half pixel at most: of those that share one, that with the largest sum. */
+  /** Returns at most one frame per half pixel: the one with the largest sum. */
   private columns(frames: number, width: number): number[] {
-    const most = Math.max(2, Math.floor(width * 2));
-    if (frames <= most) return Array.from({ length: frames }, (_, i) => i);
+    const maxColumns = Math.max(2, Math.floor(width * 2));
+    if (frames <= maxColumns) return Array.from({ length: frames }, (_, i) => i);
     const sums = (frame: number) => this.series.reduce((sum, { values }) => sum + values[frame], 0);
-    return Array.from({ length: most }, (_, column) => {
-      const from = Math.floor((column * frames) / most);
-      const to = Math.max(from + 1, Math.floor(((column + 1) * frames) / most));
+    return Array.from({ length: maxColumns }, (_, column) => {
+      const from = Math.floor((column * frames) / maxColumns);
+      const to = Math.max(from + 1, Math.floor(((column + 1) * frames) / maxColumns));
       let best = from;
       for (let frame = from + 1; frame < to; ++frame) if (sums(frame) > sums(best)) best = frame;
       return best;
@@ -165,18 +165,18 @@ export class Chart {
     context.textBaseline = "bottom";
     let above = Infinity;
     for (const [value, text] of marks) {
-      const at = Math.round(y(value)) + 0.5;
-      if (at < 0 || at > height) continue;
+      const lineY = Math.round(y(value)) + 0.5;
+      if (lineY < 0 || lineY > height) continue;
       context.strokeStyle = "#ffffff1c";
       context.lineWidth = 1;
       context.beginPath();
-      context.moveTo(0, at);
-      context.lineTo(width, at);
+      context.moveTo(0, lineY);
+      context.lineTo(width, lineY);
       context.stroke();
       context.fillStyle = "#aeb9c7";
-      if (text && above - at > 13) {
-        context.fillText(text, 2, at - 1);
-        above = at;
+      if (text && above - lineY > 13) {
+        context.fillText(text, 2, lineY - 1);
+        above = lineY;
       }
     }
   }
@@ -192,7 +192,7 @@ export class Chart {
   }
 }
 
-/** Three digits, no exponent. */
+/** Formats with three digits and no exponent. */
 export function round(value: number): string {
   if (value >= 100) return Math.round(value).toString();
   return value.toFixed(value >= 10 ? 1 : value >= 0.1 ? 2 : 3);

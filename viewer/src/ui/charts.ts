@@ -1,14 +1,14 @@
-/** The two charts of a recording, their legends and the read-out under the pointer. */
+/** The two charts of a recording, their legends and the tooltip at the pointer. */
 import type { Summary, Tables } from "../model";
 import { Chart, round, type Series } from "./chart";
 import { byId, legendKey, make } from "./dom";
 
 const colours = [0x5b8ff9, 0x5ad8a6, 0xf6bd16, 0xe8684a, 0x9d7be0, 0x6dc8ec, 0xff9d4d, 0xc2c8d5, 0xd66ba0, 0x8bbf3f];
-/** counters worth a line, when the recording has them */
+/** counters to show, where the recording has them */
 const preferred = ["awake", "pairs", "manifolds", "contact_points", "contacts", "islands"];
-const mostLines = 5;
+const maxLines = 5;
 
-export const inWords = (name: string): string => name.replaceAll("_", " ");
+export const displayName = (name: string): string => name.replaceAll("_", " ");
 const thousands = (value: number): string => value.toLocaleString("en-GB");
 
 export class Charts {
@@ -28,18 +28,18 @@ export class Charts {
   ) {
     const { stageNames, counterNames } = tables;
     this.stages = stageNames.map((name, i) => ({ name, colour: colours[i % colours.length], values: [] }));
-    const wanted = preferred.map((name) => counterNames.indexOf(name)).filter((index) => index >= 0);
-    this.counters = (wanted.length ? wanted : counterNames.map((_, i) => i)).slice(0, mostLines);
+    const indices = preferred.map((name) => counterNames.indexOf(name)).filter((index) => index >= 0);
+    this.counters = (indices.length ? indices : counterNames.map((_, i) => i)).slice(0, maxLines);
     this.counts = this.counters.map((counter, i) => ({ name: counterNames[counter], colour: colours[i], values: [] }));
-    const on = { seek, hover: (frame: number | null, x: number, y: number) => this.readOut(frame, x, y) };
+    const on = { seek, hover: (frame: number | null, x: number, y: number) => this.showTooltip(frame, x, y) };
     this.charts = [
       new Chart(byId<HTMLCanvasElement>("chart-times"), "stacked", this.stages, frameCount, on),
       new Chart(byId<HTMLCanvasElement>("chart-counts"), "lines", this.counts, frameCount, on),
     ];
   }
 
-  /** Takes over summaries that came since the last call. */
-  take(): void {
+  /** Appends the summaries read since the last call. */
+  appendNew(): void {
     if (this.used === this.summaries.length) return;
     for (; this.used < this.summaries.length; ++this.used) {
       const { stages, counters } = this.summaries[this.used];
@@ -59,24 +59,24 @@ export class Charts {
     byId("legend-times").replaceChildren(
       make("b", `step ${summary ? round(summary.total) : "–"} ms`),
       ...this.stages.map(({ name, colour, values }) =>
-        legendKey(colour, inWords(name), values[frame] === undefined ? "–" : round(values[frame])),
+        legendKey(colour, displayName(name), values[frame] === undefined ? "–" : round(values[frame])),
       ),
     );
     byId("legend-counts").replaceChildren(
       ...this.counts.map(({ name, colour, values }) =>
-        legendKey(colour, inWords(name), values[frame] === undefined ? "–" : thousands(values[frame])),
+        legendKey(colour, displayName(name), values[frame] === undefined ? "–" : thousands(values[frame])),
       ),
     );
   }
 
-  private readOut(frame: number | null, x: number, y: number): void {
+  private showTooltip(frame: number | null, x: number, y: number): void {
     const summary = frame === null ? undefined : this.summaries[frame];
     this.tip.hidden = !summary;
     if (!summary) return;
     const rows: [string, string][] = [
       ["step", `${round(summary.total)} ms`],
-      ...this.stages.map(({ name }, i): [string, string] => [inWords(name), `${round(summary.stages[i])} ms`]),
-      ...this.tables.counterNames.map((name, i): [string, string] => [inWords(name), thousands(summary.counters[i])]),
+      ...this.stages.map(({ name }, i): [string, string] => [displayName(name), `${round(summary.stages[i])} ms`]),
+      ...this.tables.counterNames.map((name, i): [string, string] => [displayName(name), thousands(summary.counters[i])]),
     ];
     this.tip.replaceChildren(
       make("b", `frame ${frame}, ${summary.time.toFixed(2)} s`),

@@ -1,6 +1,6 @@
-/** Finds and makes elements. */
+/** Finds and creates elements. */
 
-/** The element with this id; its absence is our own mistake. */
+/** Returns the element with this id; a missing element is an internal error. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no #${id}`);
@@ -20,7 +20,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
 
 export const cssColour = (rgb: number): string => `#${rgb.toString(16).padStart(6, "0")}`;
 
-/** A coloured square and a name; `value` in bold behind it. */
+/** Creates a coloured square and a name, followed by `value` in bold. */
 export function legendKey(colour: number, name: string, value = ""): HTMLElement {
   const swatch = make("i");
   swatch.style.background = cssColour(colour);
@@ -30,7 +30,7 @@ export function legendKey(colour: number, name: string, value = ""): HTMLElement
   return key;
 }
 
-/** Sizes a canvas for the screen's pixels; returns its context with CSS pixels as unit, or null when it has no size. */
+/** Resizes a canvas to the screen's pixels. Returns its context in CSS pixels, or null when the canvas has no size. */
 export function sharpContext(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
   const { width, height } = canvas.getBoundingClientRect();
   const ratio = Math.min(window.devicePixelRatio || 1, 2);

@@ -1,4 +1,4 @@
-/** The keyboard: which key does what. Keys that belong to the focused control stay with it. */
+/** Keyboard commands. Keys that the focused control uses are left to it. */
 
 export interface Commands {
   toggle(): void;
@@ -13,7 +13,7 @@ export interface Commands {
   togglePanels(): void;
   follow(): void;
   reframe(): void;
-  letGo(): void;
+  deselect(): void;
   help(): void;
 }
 
@@ -48,7 +48,7 @@ function actions(commands: Commands, shift: boolean): Record<string, () => void>
     h: commands.togglePanels,
     f: commands.follow,
     r: commands.reframe,
-    Escape: commands.letGo,
+    Escape: commands.deselect,
     "?": commands.help,
   };
 }

@@ -1,9 +1,9 @@
-/** Tells clicks and taps from drags. */
+/** Distinguishes clicks and taps from drags. */
 
-const mostPixels = 6;
-const mostMs = 600;
+const maxPixels = 6;
+const maxMs = 600;
 
-/** Calls `act` with the window coordinates of each click or tap of one pointer that stayed in its place. */
+/** Calls `act` with the window coordinates of each click or tap of one pointer that did not move. */
 export function listenToTaps(element: HTMLElement, act: (x: number, y: number) => void): void {
   let down: { id: number; x: number; y: number; time: number } | null = null;
   element.addEventListener("pointerdown", (event) => {
@@ -13,7 +13,7 @@ export function listenToTaps(element: HTMLElement, act: (x: number, y: number) =
   element.addEventListener("pointerup", (event) => {
     if (!down || event.pointerId !== down.id) return;
     const moved = Math.hypot(event.clientX - down.x, event.clientY - down.y);
-    if (moved <= mostPixels && event.timeStamp - down.time <= mostMs) act(event.clientX, event.clientY);
+    if (moved <= maxPixels && event.timeStamp - down.time <= maxMs) act(event.clientX, event.clientY);
     down = null;
   });
   element.addEventListener("pointercancel", () => (down = null));

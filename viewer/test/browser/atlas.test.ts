@@ -1,4 +1,4 @@
-/** Atlases of `fase atlas` in a real browser: PixiJS loads them and draws every sprite as its image was. */
+/** Tests atlases of `fase atlas` in a browser: PixiJS draws each sprite equal to its image. */
 import assert from "node:assert/strict";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer, type Server } from "node:http";
@@ -9,7 +9,7 @@ import path from "node:path";
 import { after, before, describe, test } from "node:test";
 import type { Browser } from "playwright-core";
 import { crc32, type Picture, pngOf } from "../png";
-import { findBrowser, keepPicture, launch, visit } from "./page";
+import { findBrowser, saveScreenshot, launch, visit } from "./page";
 
 const program = process.env.FASE_PROGRAM;
 const skip = !findBrowser()
@@ -21,7 +21,7 @@ const pixi = path.join(process.env.FASE_VIEWER ?? process.cwd(), "node_modules/p
 const width = 400;
 const height = 300;
 
-/** Draws all sprites of the sheet in rows; window.drawn says where, window.pixels() what the canvas shows. */
+/** Draws all sprites of the sheet in rows; window.drawn has their positions, window.pixels() returns the canvas. */
 const script = `
 const { Application, Assets, Rectangle, Sprite } = PIXI;
 const sheet = new URLSearchParams(location.search).get("sheet");
@@ -39,7 +39,7 @@ const sheet = new URLSearchParams(location.search).get("sheet");
     textures[name].source.scaleMode = "nearest";
     if (x + sprite.width + 2 > ${width}) { x = 2; y += row + 2; row = 0; }
     sprite.position.set(x, y);
-    window.drawn[name] = { x, y, width: sprite.width, height: sprite.height, turned: textures[name].rotate !== 0 };
+    window.drawn[name] = { x, y, width: sprite.width, height: sprite.height, rotated: textures[name].rotate !== 0 };
     x += sprite.width + 2;
     row = Math.max(row, sprite.height);
     app.stage.addChild(sprite);
@@ -53,8 +53,8 @@ const sheet = new URLSearchParams(location.search).get("sheet");
 const page = `<!doctype html><meta charset="utf-8"><title>atlas</title><link rel="icon" href="data:,">
 <style>body { margin: 0; background: #456 }</style><body><script src="/pixi.js"></script><script src="/page.js"></script>`;
 
-/** An image of many colours without symmetry, opaque except for `edge` transparent pixels all around. */
-function speckled(w: number, h: number, seed: number, edge = 0): Picture {
+/** Returns an asymmetric image of many colours, opaque except for a border of `edge` transparent pixels. */
+function noiseImage(w: number, h: number, seed: number, edge = 0): Picture {
   const pixels = new Uint8Array(4 * w * h);
   for (let y = edge; y < h - edge; ++y)
     for (let x = edge; x < w - edge; ++x) {
@@ -75,7 +75,7 @@ describe("an atlas in PixiJS", { skip }, () => {
     mkdirSync(path.join(folder, "sprites", "more"), { recursive: true });
     for (let i = 0; i < 24; ++i) {
       const name = `${i % 3 === 0 ? "more/" : ""}s${i}.png`;
-      images[name] = speckled(5 + ((i * 7) % 41), 4 + ((i * 11) % 23), i, i % 4 === 1 ? 1 : 0);
+      images[name] = noiseImage(5 + ((i * 7) % 41), 4 + ((i * 11) % 23), i, i % 4 === 1 ? 1 : 0);
       writeFileSync(path.join(folder, "sprites", name), pngOf(images[name]));
     }
     server = createServer((request, response) => {
@@ -108,10 +108,10 @@ describe("an atlas in PixiJS", { skip }, () => {
   for (const { what, options, first, pages } of [
     { what: "one page", options: ["--padding", "1"], first: "sheet.json", pages: 1 },
     { what: "trimmed, with repeated edges", options: ["--trim", "--extrude", "2"], first: "sheet.json", pages: 1 },
-    { what: "powers of two, unturned", options: ["--power-of-two", "--no-rotate"], first: "sheet.json", pages: 1 },
+    { what: "powers of two, without rotation", options: ["--power-of-two", "--no-rotate"], first: "sheet.json", pages: 1 },
     { what: "several pages", options: ["--max", "64", "--trim"], first: "sheet-0.json", pages: 2 },
   ]) {
-    test(`draws each sprite as its image was: ${what}`, async () => {
+    test(`draws each sprite equal to its image: ${what}`, async () => {
       const made = spawnSync(
         program as string,
         ["atlas", path.join(folder, "sprites"), "-o", path.join(folder, "sheet"), "--tries", "40", "--json", ...options],
@@ -124,25 +124,25 @@ describe("an atlas in PixiJS", { skip }, () => {
       const { port } = server.address() as AddressInfo;
       const opened = await visit(browser, `http://127.0.0.1:${port}/?sheet=/${first}`);
       try {
-        assert.deepEqual(opened.complaints, []);
-        type Drawn = Record<string, { x: number; y: number; width: number; height: number; turned: boolean }>;
+        assert.deepEqual(opened.problems, []);
+        type Drawn = Record<string, { x: number; y: number; width: number; height: number; rotated: boolean }>;
         const { drawn, shown } = await opened.page.evaluate(() => {
           const own = window as unknown as { drawn: Drawn; pixels(): number[] };
           return { drawn: own.drawn, shown: own.pixels() };
         });
-        await keepPicture(opened.page, `atlas ${what}`);
+        await saveScreenshot(opened.page, `atlas ${what}`);
         assert.deepEqual(Object.keys(drawn).sort(), Object.keys(images).sort());
-        const turned = Object.values(drawn).filter((one) => one.turned).length;
-        if (options.includes("--no-rotate")) assert.equal(turned, 0);
-        else assert.ok(turned > 0, "no sprite lies turned, so that turning is not tested");
+        const rotated = Object.values(drawn).filter((one) => one.rotated).length;
+        if (options.includes("--no-rotate")) assert.equal(rotated, 0);
+        else assert.ok(rotated > 0, "found no rotated sprite; rotation is not tested");
         for (const [name, image] of Object.entries(images)) {
           const at = drawn[name];
           assert.deepEqual([at.width, at.height], [image.width, image.height], name);
           for (let y = 0; y < image.height; ++y) {
             const start = 4 * ((at.y + y) * width + at.x);
             const row = shown.slice(start, start + 4 * image.width);
-            const wanted = Array.from(image.pixels.subarray(4 * y * image.width, 4 * (y + 1) * image.width));
-            assert.deepEqual(row, wanted, `${name}, row ${y}`);
+            const expected = Array.from(image.pixels.subarray(4 * y * image.width, 4 * (y + 1) * image.width));
+            assert.deepEqual(row, expected, `${name}, row ${y}`);
           }
         }
       } finally {

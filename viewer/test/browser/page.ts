@@ -1,4 +1,4 @@
-/** Serves the built page with a recording, as strictly as `fase view` does, and opens it in a real browser. */
+/** Serves the built page with a recording, with the same security headers as `fase view`, and opens it in a browser. */
 import { mkdirSync, mkdtempSync, existsSync, readFileSync, rmSync } from "node:fs";
 import { createServer, type Server } from "node:http";
 import { createRequire } from "node:module";
@@ -20,13 +20,13 @@ const types: Record<string, string> = {
   "/recording": "application/octet-stream",
 };
 
-/** The browser of the system: $CHROMIUM, or one in its usual place; null: none. */
+/** Returns the path of the browser: $CHROMIUM, or a standard place; null: not found. */
 export function findBrowser(): string | null {
   const places = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
   return places.find((place) => place && existsSync(place)) ?? null;
 }
 
-/** Builds the page into a folder of its own, or takes $FASE_VIEWER_PAGE, where the build has put it. */
+/** Builds the page into a temporary folder, or uses $FASE_VIEWER_PAGE, the build's output. */
 export function buildPage(): { folder: string; remove: () => void } {
   const built = process.env.FASE_VIEWER_PAGE;
   if (built) return { folder: built, remove: () => {} };
@@ -38,7 +38,7 @@ export function buildPage(): { folder: string; remove: () => void } {
   return { folder, remove: () => rmSync(folder, { recursive: true, force: true }) };
 }
 
-/** A server on 127.0.0.1; `recording` can be exchanged while it runs. null: it answers 404. */
+/** A server on 127.0.0.1. `recording` can change while it runs; null: responds with 404. */
 export class PageServer {
   recording: Uint8Array | null = null;
   private constructor(private readonly server: Server) {}
@@ -53,7 +53,7 @@ export class PageServer {
       const name = (request.url ?? "").split("?")[0];
       const body = name === "/recording" ? made.recording : files[name];
       if (!body) {
-        response.writeHead(404, { "Content-Type": "text/plain" }).end("there is no such thing here");
+        response.writeHead(404, { "Content-Type": "text/plain" }).end("not found");
         return;
       }
       response.writeHead(200, {
@@ -94,35 +94,35 @@ export function launch(more: string[] = []): Promise<Browser> {
   });
 }
 
-/** A page and everything that it complained about. */
+/** A page with its errors and warnings. */
 export interface Visit {
   page: Page;
-  complaints: string[];
+  problems: string[];
   close(): Promise<void>;
 }
 
 export async function visit(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<Visit> {
   const context = await browser.newContext({ viewport: { width: 800, height: 600 }, ...options });
   const page = await context.newPage();
-  const complaints: string[] = [];
+  const problems: string[] = [];
   page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type()) && !isOfTheDriver(message.text()))
-      complaints.push(message.text());
+    if (["error", "warning"].includes(message.type()) && !isDriverWarning(message.text()))
+      problems.push(message.text());
   });
   page.on("response", (response) => {
-    if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
+    if (response.status() >= 400) problems.push(`${response.status()} ${response.url()}`);
   });
-  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("pageerror", (error) => problems.push(error.message));
   await page.goto(url);
   await page.waitForSelector("html[data-state]", { timeout: 60_000 });
-  return { page, complaints, close: () => context.close() };
+  return { page, problems, close: () => context.close() };
 }
 
-/** Software drawing is slow, and the browser says so. */
-const isOfTheDriver = (text: string): boolean => /GL Driver Message|GPU stall|swiftshader/i.test(text);
+/** Whether a message is the browser's warning about slow software drawing. */
+const isDriverWarning = (text: string): boolean => /GL Driver Message|GPU stall|swiftshader/i.test(text);
 
-/** Keeps a picture in $FASE_SCREENSHOTS, when that is set. */
-export async function keepPicture(page: Page, name: string): Promise<void> {
+/** Saves a screenshot in $FASE_SCREENSHOTS, if set. */
+export async function saveScreenshot(page: Page, name: string): Promise<void> {
   const folder = process.env.FASE_SCREENSHOTS;
   if (!folder) return;
   mkdirSync(folder, { recursive: true });

@@ -1,4 +1,4 @@
-/** The page in a real browser: what a person does with it, and what it says when it cannot. */
+/** Tests the page in a browser: user actions and error messages. */
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import os from "node:os";
@@ -8,7 +8,7 @@ import type { Browser, BrowserContextOptions, Page } from "playwright-core";
 import { Recording } from "../../src/recording";
 import { chunk, fileHeader, join } from "../encode";
 import { makeFixture } from "../fixtures";
-import { buildPage, findBrowser, keepPicture, launch, PageServer, type Visit, visit } from "./page";
+import { buildPage, findBrowser, saveScreenshot, launch, PageServer, type Visit, visit } from "./page";
 
 const skip = findBrowser() ? false : "skipped: no chromium on this system";
 const real = process.env.FASE_RECORDING;
@@ -16,12 +16,12 @@ const fixture = makeFixture({ frames: 240 }).file;
 
 const frameOf = (page: Page) => page.evaluate(() => Number(document.documentElement.dataset.frame));
 const waitForFrame = (page: Page, frame: number) =>
-  page.waitForFunction((wanted) => document.documentElement.dataset.frame === String(wanted), frame, {
+  page.waitForFunction((expected) => document.documentElement.dataset.frame === String(expected), frame, {
     timeout: 30_000,
   });
 const text = (page: Page, selector: string) => page.locator(selector).innerText();
 
-/** The canvas as the browser shows it: red, green, blue of every fourth pixel in each direction. */
+/** Returns the page as shown: red, green, blue of every fourth pixel in each direction. */
 async function pixels(page: Page): Promise<number[]> {
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   await page.waitForSelector("html[data-still=true]", { timeout: 60_000 });
@@ -42,9 +42,9 @@ function changed(a: number[], b: number[]): number {
   return count / (a.length / 3);
 }
 
-/** Where a body is in the window. */
-const placeOf = (page: Page, name: string) =>
-  page.evaluate((wanted) => {
+/** Returns the window position of a body. */
+const positionOf = (page: Page, name: string) =>
+  page.evaluate((bodyName) => {
     const { recording, view } = (
       window as unknown as {
         fase: {
@@ -53,7 +53,7 @@ const placeOf = (page: Page, name: string) =>
         };
       }
     ).fase;
-    const row = recording.tables.bodies.findIndex((body) => body.name === wanted);
+    const row = recording.tables.bodies.findIndex((body) => body.name === bodyName);
     return view.project([...view.poses.positions.subarray(3 * row, 3 * row + 3)]);
   }, name);
 
@@ -74,7 +74,7 @@ describe("the viewer in a browser", { skip }, () => {
     built?.remove();
   });
 
-  /** A page with panels hidden shows more of the scene; all pages must be free of complaints at their end. */
+  /** Opens the page with a recording; finish() fails if the page has reported problems. */
   async function open(
     options: { file?: Uint8Array | null; hash?: string; context?: BrowserContextOptions } = {},
   ): Promise<Visit> {
@@ -85,10 +85,10 @@ describe("the viewer in a browser", { skip }, () => {
   }
   async function finish(visited: Visit): Promise<void> {
     await visited.close();
-    assert.deepEqual(visited.complaints, []);
+    assert.deepEqual(visited.problems, []);
   }
 
-  test("a recording loads without complaints and its picture is not blank", async () => {
+  test("a recording loads without problems and its picture is not blank", async () => {
     const visited = await open({ hash: "#f=90" });
     const { page } = visited;
     assert.equal(await page.getAttribute("html", "data-state"), "ready");
@@ -99,11 +99,11 @@ describe("the viewer in a browser", { skip }, () => {
     for (let i = 0; i < seen.length; i += 3)
       colours.add((seen[i] >> 4) * 256 + (seen[i + 1] >> 4) * 16 + (seen[i + 2] >> 4));
     assert.ok(colours.size > 60, `${colours.size} colours`);
-    await keepPicture(page, "wall");
+    await saveScreenshot(page, "wall");
     await finish(visited);
   });
 
-  test("play runs, pause holds, and the picture moves", async () => {
+  test("play and pause work, and the picture changes", async () => {
     const visited = await open({ hash: "#f=60" });
     const { page } = visited;
     const still = await pixels(page);
@@ -118,7 +118,7 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
-  test("a page without a frame in its address begins to play, unless the visitor wants no motion", async () => {
+  test("a page without a frame in its address starts playing, unless the visitor prefers reduced motion", async () => {
     const moving = await open();
     await moving.page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 2, null, {
       timeout: 30_000,
@@ -130,7 +130,7 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(calm);
   });
 
-  test("steps, keys and the scrub bar go where they say", async () => {
+  test("step buttons, keys and the scrub bar go to the right frame", async () => {
     const visited = await open({ hash: "#f=10" });
     const { page } = visited;
     await waitForFrame(page, 10);
@@ -164,7 +164,7 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
-  test("colours, world boxes and contact points change the picture and change it back", async () => {
+  test("colours, world boxes and contact points change the picture and restore it", async () => {
     const visited = await open({ hash: "#f=95" });
     const { page } = visited;
     const plain = await pixels(page);
@@ -174,7 +174,7 @@ describe("the viewer in a browser", { skip }, () => {
       const now = await pixels(page);
       for (const other of pictures) assert.ok(changed(other, now) > 0.004, by);
       pictures.push(now);
-      await keepPicture(page, `colours-${by}`);
+      await saveScreenshot(page, `colours-${by}`);
     }
     await page.selectOption("#colours", "material");
     for (const id of ["boxes", "contacts"]) {
@@ -183,7 +183,7 @@ describe("the viewer in a browser", { skip }, () => {
       assert.equal(await page.getAttribute(`#${id}`, "aria-pressed"), "true");
       const on = await pixels(page);
       assert.ok(changed(before, on) > 0.0005, id);
-      await keepPicture(page, id);
+      await saveScreenshot(page, id);
       await page.click(`#${id}`);
       await page.mouse.move(500, 300);
       assert.ok(changed(before, await pixels(page)) < 0.002, id);
@@ -191,31 +191,31 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
-  test("a click picks a body, its panel reads its state, and the camera follows it", async () => {
+  test("a click picks a body, its panel shows its state, and the camera follows it", async () => {
     const visited = await open({ hash: "#f=20" });
     const { page } = visited;
     await waitForFrame(page, 20);
-    const { x, y } = await placeOf(page, "ball");
+    const { x, y } = await positionOf(page, "ball");
     await page.mouse.click(x, y);
     await page.waitForSelector("#body:not([hidden])");
     assert.equal(await text(page, "#body-name"), "ball");
     const state = await text(page, "#body-state");
     for (const words of ["dynamic", "awake", "sphere r 0.6 m", "1099511627777", "m/s", "100 kg"])
       assert.ok(state.includes(words), words);
-    await keepPicture(page, "picked");
+    await saveScreenshot(page, "picked");
     await page.keyboard.press("f");
     for (let i = 0; i < 20; ++i) await page.keyboard.press("ArrowRight");
     await waitForFrame(page, 40);
     await pixels(page);
-    const followed = await placeOf(page, "ball");
-    assert.ok(Math.hypot(followed.x - x, followed.y - y) < 3, "it stays where it is in the window");
-    await keepPicture(page, "followed");
+    const followed = await positionOf(page, "ball");
+    assert.ok(Math.hypot(followed.x - x, followed.y - y) < 3, "it keeps its position in the window");
+    await saveScreenshot(page, "followed");
     await page.keyboard.press("Escape");
     await page.waitForSelector("#body", { state: "hidden" });
     await finish(visited);
   });
 
-  test("dragging turns the camera, the wheel zooms, and the address keeps both and the frame", async () => {
+  test("dragging rotates the camera, the wheel zooms, and the address stores camera and frame", async () => {
     const visited = await open({ hash: "#f=30" });
     const { page } = visited;
     const before = await pixels(page);
@@ -224,20 +224,20 @@ describe("the viewer in a browser", { skip }, () => {
     await page.mouse.move(640, 280, { steps: 5 });
     await page.mouse.up();
     await page.mouse.wheel(0, -400);
-    const turned = await pixels(page);
-    assert.ok(changed(before, turned) > 0.02);
+    const rotated = await pixels(page);
+    assert.ok(changed(before, rotated) > 0.02);
     assert.equal(await page.isVisible("#body"), false, "a drag is not a click");
     await page.waitForFunction(() => location.hash.includes("c="));
     const again = await open({ hash: await page.evaluate(() => location.hash) });
     assert.equal(await frameOf(again.page), 30);
-    assert.ok(changed(turned, await pixels(again.page)) < 0.01);
+    assert.ok(changed(rotated, await pixels(again.page)) < 0.01);
     await page.keyboard.press("r");
-    assert.ok(changed(before, await pixels(page)) < 0.01, "r shows everything as at first");
+    assert.ok(changed(before, await pixels(page)) < 0.01, "r restores the initial view");
     await finish(again);
     await finish(visited);
   });
 
-  test("charts read out the frame under the pointer and take you there", async () => {
+  test("charts show the frame at the pointer, and a click goes there", async () => {
     const visited = await open({ hash: "#f=0" });
     const { page } = visited;
     const box = await page.locator("#chart-times").boundingBox();
@@ -249,7 +249,7 @@ describe("the viewer in a browser", { skip }, () => {
     for (const words of ["solve", "contact points"]) assert.ok(tip.includes(words), words);
     const frame = Number(/frame (\d+)/.exec(tip)?.[1]);
     assert.ok(Math.abs(frame - 60) <= 1, `frame ${frame}`);
-    await keepPicture(page, "chart");
+    await saveScreenshot(page, "chart");
     await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
     await waitForFrame(page, frame);
     await page.keyboard.press("g");
@@ -257,23 +257,23 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
-  test("panels hide and come back; help opens and closes", async () => {
+  test("panels can be hidden and shown; help opens and closes", async () => {
     const visited = await open({ hash: "#f=200" });
     const { page } = visited;
     await page.keyboard.press("h");
     for (const id of ["head", "tools", "dock"]) assert.equal(await page.isVisible(`#${id}`), false);
-    await keepPicture(page, "bare");
+    await saveScreenshot(page, "bare");
     await page.click("#show-panels");
     assert.ok(await page.isVisible("#dock"));
     await page.keyboard.press("?");
     assert.ok(await page.isVisible("#help"));
-    await keepPicture(page, "help");
+    await saveScreenshot(page, "help");
     await page.keyboard.press("Escape");
     assert.equal(await page.isVisible("#help"), false);
     await finish(visited);
   });
 
-  test("on a phone all controls fit, a tap picks, a finger turns, two fingers zoom", async () => {
+  test("on a phone all controls fit, a tap picks, one finger rotates, two fingers zoom", async () => {
     const context: BrowserContextOptions = {
       viewport: { width: 390, height: 780 },
       hasTouch: true,
@@ -287,12 +287,12 @@ describe("the viewer in a browser", { skip }, () => {
       const box = await page.locator(`#${id}`).boundingBox();
       assert.ok(box && box.x >= 0 && box.y >= 0 && box.x + box.width <= 390 && box.y + box.height <= 780, id);
     }
-    await keepPicture(page, "phone");
-    const { x, y } = await placeOf(page, "ball");
+    await saveScreenshot(page, "phone");
+    const { x, y } = await positionOf(page, "ball");
     await page.touchscreen.tap(x, y);
     await page.waitForSelector("#body:not([hidden])");
     assert.equal(await text(page, "#body-name"), "ball");
-    await keepPicture(page, "phone-picked");
+    await saveScreenshot(page, "phone-picked");
     await page.tap("#body-close");
     const before = await pixels(page);
     const session = await page.context().newCDPSession(page);
@@ -304,8 +304,8 @@ describe("the viewer in a browser", { skip }, () => {
     await touch("touchStart", [[150, 250]]);
     for (let i = 1; i <= 6; ++i) await touch("touchMove", [[150 + 15 * i, 250]]);
     await touch("touchEnd", []);
-    const turned = await pixels(page);
-    assert.ok(changed(before, turned) > 0.02, "one finger turns");
+    const rotated = await pixels(page);
+    assert.ok(changed(before, rotated) > 0.02, "one finger rotates");
     await touch("touchStart", [
       [180, 260],
       [210, 260],
@@ -316,15 +316,15 @@ describe("the viewer in a browser", { skip }, () => {
         [210 + 12 * i, 260],
       ]);
     await touch("touchEnd", []);
-    assert.ok(changed(turned, await pixels(page)) > 0.05, "two fingers zoom");
+    assert.ok(changed(rotated, await pixels(page)) > 0.05, "two fingers zoom");
     await finish(visited);
   });
 
-  test("files that are broken, missing, foreign or newer are named in the page", async () => {
+  test("the page explains broken, missing, foreign and newer files", async () => {
     const cases: [Uint8Array | null, RegExp][] = [
       [fixture.subarray(0, 100), /no HEAD|inside a chunk/],
       [new TextEncoder().encode('{"asset": {"version": "2.0"}}'), /not a Fase recording/],
-      [fileHeader(9), /version 9, this viewer reads 1/],
+      [fileHeader(9), /version 9; this viewer reads 1/],
       [new Uint8Array(0), /empty|404/],
       [join(fileHeader(), chunk("HEAD", new Uint8Array([200]))), /HEAD, byte/],
       [null, /404/],
@@ -335,7 +335,7 @@ describe("the viewer in a browser", { skip }, () => {
       assert.ok(await page.isVisible("#error"));
       assert.match(await text(page, "#error-text"), reason);
       if (file === null) {
-        await keepPicture(page, "error");
+        await saveScreenshot(page, "error");
         await page.setInputFiles("#open", {
           name: "wall.faserec",
           mimeType: "application/octet-stream",
@@ -348,7 +348,7 @@ describe("the viewer in a browser", { skip }, () => {
     }
   });
 
-  test("a recording without its end plays up to there and says so", async () => {
+  test("a truncated recording plays up to its end and shows a note", async () => {
     const visited = await open({ file: fixture.subarray(0, Math.floor(fixture.length * 0.7)) });
     assert.match(await text(visited.page, "#note"), /end of this recording is missing.*\d+ frames/);
     await visited.page.keyboard.press("End");
@@ -356,7 +356,7 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
-  test("without WebGL the page says what is missing", async () => {
+  test("without WebGL the page explains what is missing", async () => {
     const blind = await launch(["--disable-3d-apis"]);
     server.recording = fixture;
     const context = await blind.newContext();
@@ -367,7 +367,7 @@ describe("the viewer in a browser", { skip }, () => {
     await blind.close();
   });
 
-  test("one page with everything inside plays from a file", async () => {
+  test("a self-contained page plays from a file", async () => {
     const read = (name: string) => readFileSync(path.join(built.folder, name), "utf8");
     const recording = Buffer.from(fixture).toString("base64");
     const html = read("index.html")
@@ -380,10 +380,10 @@ describe("the viewer in a browser", { skip }, () => {
       );
     assert.ok(
       !/(src|href)="(?!#|data:)/.test(html.replace(/<script>[^]*<\/script>/, "")),
-      "nothing is loaded from elsewhere",
+      "the page loads nothing from elsewhere",
     );
-    const folder = mkdtempSync(path.join(os.tmpdir(), "fase-viewer-whole-"));
-    const file = path.join(folder, "whole.html");
+    const folder = mkdtempSync(path.join(os.tmpdir(), "fase-viewer-page-"));
+    const file = path.join(folder, "page.html");
     writeFileSync(file, html);
     const visited = await visit(browser, `file://${file}#f=90`);
     assert.equal(await visited.page.getAttribute("html", "data-state"), "ready");
@@ -400,16 +400,16 @@ describe("the viewer in a browser", { skip }, () => {
       const last = Recording.openNow(file).frameCount - 1;
       const visited = await open({ file, hash: "#f=0", context: { viewport: { width: 1280, height: 800 } } });
       const { page } = visited;
-      await keepPicture(page, "real-first");
+      await saveScreenshot(page, "real-first");
       for (const share of [0.25, 0.5, 1]) {
         const frame = Math.round(share * last);
         await page.evaluate((f) => (location.hash = `#f=${f}`), frame);
         await waitForFrame(page, frame);
-        await keepPicture(page, `real-${100 * share}`);
+        await saveScreenshot(page, `real-${100 * share}`);
       }
       await page.keyboard.press("Home");
       await page.keyboard.press(" ");
-      await page.waitForFunction((most) => Number(document.documentElement.dataset.frame) >= most, Math.min(10, last), {
+      await page.waitForFunction((minFrame) => Number(document.documentElement.dataset.frame) >= minFrame, Math.min(10, last), {
         timeout: 60_000,
       });
       await finish(visited);

@@ -1,4 +1,4 @@
-/** Numbers, checks and packing. */
+/** Tests of numbers, checksums and packing. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Reader } from "../../src/format/bytes";
@@ -16,14 +16,14 @@ const packed = (method: number, rawLength: number, bytes: Uint8Array): Uint8Arra
 };
 const fromBase64 = (text: string) => new Uint8Array(Buffer.from(text, "base64"));
 
-/** The same words 200 times, packed by the zstd command: level 19 without, level 3 with its own check. */
+/** The same words 200 times, packed by the zstd command: level 19 without checksum, level 3 with checksum. */
 const words = "fase fase fase fase, broad phase and narrow phase, ".repeat(200);
 const zstdFrames = [
   "KLUv/QBoXQEA8gEHDNA9qCRDnqIceBHhLYa9zJvF7tEXWn4ZBo+eAgMAoscqjqGJDcjlDQ==",
   "KLUv/QRYhQEA8GZhc2UgLCBicm9hZCBwaGFzZSBhbmQgbmFycm93LAUAj8cqDjIFiKpfaA4DcnkDzzYIzw==",
 ];
 
-test("a crc32 is the one of zip, for every length and offset", () => {
+test("crc32 equals the bitwise definition for every length and offset", () => {
   assert.equal(crc32(new TextEncoder().encode("123456789")), 0xcbf43926);
   const bytes = Uint8Array.from({ length: 100 }, (_, i) => (i * 37) & 255);
   for (let from = 0; from < 20; ++from)
@@ -37,7 +37,7 @@ test("a crc32 is the one of zip, for every length and offset", () => {
     }
 });
 
-test("varuints and varints come back as they were written, up to 2^53 - 1", () => {
+test("varuints and varints round-trip up to 2^53 - 1", () => {
   const numbers = [0, 1, 127, 128, 16383, 16384, 2 ** 31, 2 ** 32 + 5, 2 ** 52, Number.MAX_SAFE_INTEGER];
   const out = new Writer();
   for (const n of numbers) out.varuint(n);
@@ -54,7 +54,7 @@ test("varuints and varints come back as they were written, up to 2^53 - 1", () =
   assert.equal(read.left, 0);
 });
 
-test("a varuint that does not end, is too large or is cut off is refused", () => {
+test("an unterminated, too large or truncated varuint is refused", () => {
   for (const bytes of [
     new Uint8Array(11).fill(255),
     new Uint8Array(10).fill(0xff).fill(0x7f, 9),
@@ -64,34 +64,34 @@ test("a varuint that does not end, is too large or is cut off is refused", () =>
     assert.throws(() => new Reader(bytes, "test").varuint(), /test, byte \d+/);
 });
 
-test("rows rise and stay below their limit", () => {
+test("rows are ascending and below their limit", () => {
   const out = new Writer();
   out.rows([3, 4, 9]);
   assert.deepEqual([...out.done()], [3, 0, 4]);
   assert.deepEqual([...new Reader(out.done(), "test").rows(3, 10)], [3, 4, 9]);
-  assert.throws(() => new Reader(out.done(), "test").rows(3, 9), /row 9, need below 9/);
+  assert.throws(() => new Reader(out.done(), "test").rows(3, 9), /row 9; expected below 9/);
 });
 
-test("byte planes come back as they were written", () => {
+test("byte planes round-trip", () => {
   const out = new Writer();
   out.planes16([0, 1, 256, 65535, 4660]);
   assert.deepEqual([...new Reader(out.done(), "test").planes16(5)], [0, 1, 256, 65535, 4660]);
 });
 
-test("reading past the end names the place", () => {
+test("reading past the end names the offset", () => {
   const read = new Reader(new Uint8Array(10), "here");
   read.u64();
-  assert.throws(() => read.u32(), /here, byte 8: found 2 bytes, need 4/);
+  assert.throws(() => read.u32(), /here, byte 8: found 2 bytes; expected 4/);
 });
 
-test("bodies packed by the zstd command unpack to the same bytes", () => {
+test("chunk bodies packed by the zstd command unpack to the same bytes", () => {
   for (const frame of zstdFrames) {
     const raw = unpack(packed(1, words.length, fromBase64(frame)), "test");
     assert.equal(new TextDecoder().decode(raw), words);
   }
 });
 
-test("a long frame unpacks in slices, and its beginning alone when that is enough", () => {
+test("a long frame unpacks in slices, and partially when its beginning is enough", () => {
   const raw = Uint8Array.from({ length: 500_000 }, (_, i) => (i * i) & 255);
   const body = packed(1, raw.length, zstdRaw(raw).packed);
   assert.deepEqual(unpack(body, "test"), raw);
@@ -104,13 +104,13 @@ test("broken, oversized and unknown packings are refused with a reason", () => {
   const frame = fromBase64(zstdFrames[0]);
   const cases: [Uint8Array, RegExp][] = [
     [packed(2, 5, new Uint8Array(5)), /method 2/],
-    [packed(0, 6, new Uint8Array(5)), /found 5 bytes, need 6/],
+    [packed(0, 6, new Uint8Array(5)), /found 5 bytes; expected 6/],
     [packed(1, 2 ** 31, frame), /expands to 2147483648 bytes, limit/],
-    [packed(1, words.length + 1, frame), /zstd frame, need/],
+    [packed(1, words.length + 1, frame), /zstd frame; expected/],
     [packed(1, words.length, frame.subarray(0, frame.length - 4)), /broken|found/],
     [packed(1, 10, new Uint8Array(10)), /no zstd frame/],
-    [new Uint8Array(5), /need at least 8/],
-    // a window of 2 GiB in the frame's header must not be allocated
+    [new Uint8Array(5), /expected at least 8/],
+    // a window of 2 GiB in the header must not be allocated
     [packed(1, 4, Uint8Array.of(0x28, 0xb5, 0x2f, 0xfd, 0, 21 << 3, 1, 0, 0)), /window/],
   ];
   for (const [body, reason] of cases) assert.throws(() => unpack(body, "test"), reason);

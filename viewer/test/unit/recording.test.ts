@@ -1,4 +1,4 @@
-/** The decoder against the encoder that was written from the same words: format.md. */
+/** Tests the decoder against an independent encoder of the same format (format.md). */
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -25,7 +25,7 @@ import { type Fixture, makeFixture, quanta } from "../fixtures";
 
 const small = { frames: 100, columns: 8, courses: 6 };
 
-/** Metres and radians by which a decoded body may differ from what was put in. */
+/** Compares a decoded body with the input, within the quantization error. */
 function assertBody(frame: Frame, input: BodyInput): void {
   const { row } = input;
   assert.equal(frame.present[row], 1);
@@ -70,21 +70,21 @@ for (const [name, pack] of [
   ["plain", plain],
   ["zstd", zstdRaw],
 ] as const)
-  test(`every frame of a ${name} recording comes back as it went in`, () => {
+  test(`every frame of a ${name} recording round-trips`, () => {
     const { file, inputs } = makeFixture({ ...small, pack });
     const recording = Recording.openNow(file);
-    assert.equal(recording.lost, "");
+    assert.equal(recording.damage, "");
     assert.equal(recording.frameCount, inputs.length);
     inputs.forEach((input, i) => assertFrame(recording.frame(i), input));
   });
 
-test("frames asked for in any order are the same as in order", () => {
+test("frames read in any order equal frames read in sequence", () => {
   const { file, inputs } = makeFixture(small);
   const recording = Recording.openNow(file);
   for (const i of [99, 0, 50, 49, 48, 98, 31, 32, 33, 1, 64]) assertFrame(recording.frame(i), inputs[i]);
 });
 
-test("what is the same in all frames is read: names, numbers, colours, shapes, visuals", () => {
+test("the shared tables are read: names, numbers, colours, shapes, visuals", () => {
   const { tables } = Recording.openNow(makeFixture(small).file);
   assert.equal(tables.title, "test wall");
   assert.ok(Math.abs(tables.timeStep - 1 / 60) < 1e-8);
@@ -111,28 +111,28 @@ test("summaries hold stage times, counters and the number of events", () => {
     assert.equal(summary.hits, inputs[i].hits?.length);
     assert.equal(summary.sensors, (inputs[i].sensorsBegun?.length ?? 0) + (inputs[i].sensorsEnded?.length ?? 0));
   });
-  assert.equal(summaries[30].added, 1, "one body comes at half a second");
+  assert.equal(summaries[30].added, 1, "one body is added at half a second");
 });
 
-test("a recording cut anywhere opens with all blocks that are whole", () => {
+test("a recording truncated anywhere opens with all complete blocks", () => {
   const { file, chunkOffsets }: Fixture = makeFixture({ frames: 70, columns: 2, courses: 2, blockFrames: 16 });
   const ends = [...chunkOffsets.slice(1), file.length];
   const blockEnds = ends.slice(-5);
   for (let length = 0; length < file.length; length += length < 600 ? 1 : 97) {
     const cut = file.subarray(0, length);
-    const whole = blockEnds.filter((end) => end <= length).length;
-    if (whole === 0) {
+    const complete = blockEnds.filter((end) => end <= length).length;
+    if (complete === 0) {
       assert.throws(() => Recording.openNow(cut), { name: "RecordingError" });
       continue;
     }
     const recording = Recording.openNow(cut);
-    assert.equal(recording.frameCount, 16 * whole);
-    assert.equal(recording.lost === "", ends.includes(length), `${length}: ${recording.lost}`);
+    assert.equal(recording.frameCount, 16 * complete);
+    assert.equal(recording.damage === "", ends.includes(length), `${length}: ${recording.damage}`);
     recording.frame(recording.frameCount - 1);
   }
 });
 
-test("a flipped bit ends the recording before its chunk, and never shows what is wrong", () => {
+test("a flipped bit ends the recording before its chunk; no wrong frame is shown", () => {
   const { file, inputs, chunkOffsets } = makeFixture({ frames: 40, columns: 2, courses: 1, blockFrames: 8 });
   for (let at = 0; at < file.length; at += at < 400 ? 1 : 23) {
     const damaged = file.slice();
@@ -147,12 +147,12 @@ test("a flipped bit ends the recording before its chunk, and never shows what is
       continue;
     }
     const recording = Recording.openNow(damaged);
-    assert.ok(recording.frameCount < inputs.length && recording.lost !== "");
+    assert.ok(recording.frameCount < inputs.length && recording.damage !== "");
     assertFrame(recording.frame(recording.frameCount - 1), inputs[recording.frameCount - 1]);
   }
 });
 
-test("damage behind a right check is an error in words, never a crash", () => {
+test("damage with a valid checksum gives a RecordingError, never a crash", () => {
   const { inputs } = makeFixture({ frames: 6, columns: 2, courses: 1 });
   const encoder = new FrameEncoder(quanta);
   inputs.forEach((input) => encoder.add(input));
@@ -172,16 +172,16 @@ test("damage behind a right check is an error in words, never a crash", () => {
   }
 });
 
-test("other files, other versions and empty recordings are refused with the reason", () => {
+test("other files, other versions and empty recordings are refused with a reason", () => {
   assert.throws(() => Recording.openNow(new Uint8Array(0)), /empty/);
   assert.throws(() => Recording.openNow(new TextEncoder().encode("glTF....................")), /not a Fase recording/);
-  assert.throws(() => Recording.openNow(fileHeader(7)), /version 7, this viewer reads 1/);
+  assert.throws(() => Recording.openNow(fileHeader(7)), /version 7; this viewer reads 1/);
   assert.throws(() => Recording.openNow(fileHeader()), /no HEAD/);
   const { file, chunkOffsets } = makeFixture({ frames: 1, columns: 1, courses: 1 });
   assert.throws(() => Recording.openNow(file.subarray(0, chunkOffsets[7])), /no frames/);
 });
 
-/** A recording of one ball, written by hand. */
+/** Returns a recording of one ball with the given frames. */
 function tiny(frames: FrameInput[], more: Uint8Array[] = []): Uint8Array {
   const encoder = new FrameEncoder(quanta);
   frames.forEach((frame) => encoder.add(frame));
@@ -225,13 +225,13 @@ const frameOf = (step: number, bodies: BodyInput[]): FrameInput => ({
 });
 const at = (x: number): BodyInput => ({ row: 0, position: [x, 0, 0], rotation: [0, 0, 0, 1], flags: 9, island: 0 });
 
-test("a body that rests, moves, jumps, goes far away and comes back is where it should be", () => {
-  const places = [0, 0.1, 0.25, 0.25, 0.3, 0.6, 5000, 5000.2, -9e6, -9e6, 3, 3.1];
-  const recording = Recording.openNow(tiny(places.map((x, i) => frameOf(i, [at(x)]))));
-  places.forEach((x, i) => assert.ok(Math.abs(recording.frame(i).positions[0] - x) < 0.51 / quanta, `frame ${i}`));
+test("a body that rests, moves, jumps, goes far away and returns has the right position", () => {
+  const positions = [0, 0.1, 0.25, 0.25, 0.3, 0.6, 5000, 5000.2, -9e6, -9e6, 3, 3.1];
+  const recording = Recording.openNow(tiny(positions.map((x, i) => frameOf(i, [at(x)]))));
+  positions.forEach((x, i) => assert.ok(Math.abs(recording.frame(i).positions[0] - x) < 0.51 / quanta, `frame ${i}`));
 });
 
-test("rotations turn points as the ones that were written do", () => {
+test("decoded rotations rotate points like the input", () => {
   const rotations = [
     [0.5, 0.5, 0.5, 0.5],
     [-0.9, 0.1, 0.3, -0.2],
@@ -242,13 +242,13 @@ test("rotations turn points as the ones that were written do", () => {
   const recording = Recording.openNow(tiny(rotations.map((q, i) => frameOf(i, [{ ...at(0), rotation: [...q] }]))));
   rotations.forEach((q, i) => {
     const norm = Math.hypot(...q);
-    const want = rotate([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm], [1, 2, 3]);
-    const have = rotate([...recording.frame(i).rotations] as [number, number, number, number], [1, 2, 3]);
-    want.forEach((x, k) => assert.ok(Math.abs(x - have[k]) < 2e-3));
+    const expected = rotate([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm], [1, 2, 3]);
+    const actual = rotate([...recording.frame(i).rotations] as [number, number, number, number], [1, 2, 3]);
+    expected.forEach((x, k) => assert.ok(Math.abs(x - actual[k]) < 2e-3));
   });
 });
 
-test("colliders come and go at their frames; unknown chunks and the index are passed over", () => {
+test("colliders exist in their frames; unknown chunks and the index are skipped", () => {
   const index = chunk("INDX", new Uint8Array(4));
   const file = tiny(
     [0, 1, 2, 3].map((i) => frameOf(i, [at(i)])),
@@ -259,8 +259,8 @@ test("colliders come and go at their frames; unknown chunks and the index are pa
       new Uint8Array(16),
     ],
   );
-  const { tables, lost } = Recording.openNow(file);
-  assert.equal(lost, "");
+  const { tables, damage } = Recording.openNow(file);
+  assert.equal(damage, "");
   assert.deepEqual(
     tables.colliders.map(({ from, to }) => [from, to]),
     [
@@ -276,7 +276,7 @@ test(
   { skip: real ? false : "skipped: FASE_RECORDING names no recording" },
   () => {
     const recording = Recording.openNow(new Uint8Array(readFileSync(real as string)));
-    assert.equal(recording.lost, "");
+    assert.equal(recording.damage, "");
     assert.ok(recording.frameCount > 0 && recording.tables.bodies.length > 0);
     const summaries = summariesOf(recording);
     assert.equal(summaries.length, recording.frameCount);

@@ -1,80 +1,17 @@
-/** Picking, world boxes, mixing of frames and playback, without a picture. */
+/** Tests of picking, world boxes, interpolation and playback, without drawing. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { readHash, writeHash } from "../../src/hash";
-import type { Shape, Vec3 } from "../../src/model";
+import type { Vec3 } from "../../src/model";
 import { Playback } from "../../src/playback";
 import { Recording } from "../../src/recording";
 import { worldBox } from "../../src/scene/bounds";
-import { hash01 } from "../../src/scene/maths";
 import { makeParts } from "../../src/scene/parts";
-import { meet, pick } from "../../src/scene/pick";
+import { pick } from "../../src/scene/pick";
 import { Poses } from "../../src/scene/poses";
+import { traitsOf } from "../../src/shapes/list";
 import { speedBetween } from "../../src/ui/body_panel";
-import { makeFixture, octahedron } from "../fixtures";
-
-const solids: Exclude<Shape, { kind: "half-space" }>[] = [
-  { kind: "sphere", radius: 0.7 },
-  { kind: "box", half: [0.5, 0.2, 0.9] },
-  { kind: "capsule", radius: 0.3, halfLength: 0.6 },
-  { kind: "cylinder", radius: 0.4, halfHeight: 0.7 },
-  { kind: "convex hull", mesh: octahedron(0.8) },
-];
-
-/** Is the point in the solid? Written by its definition. */
-function contains(shape: Shape, [x, y, z]: Vec3): boolean {
-  switch (shape.kind) {
-    case "sphere":
-      return Math.hypot(x, y, z) <= shape.radius;
-    case "box":
-      return Math.abs(x) <= shape.half[0] && Math.abs(y) <= shape.half[1] && Math.abs(z) <= shape.half[2];
-    case "capsule":
-      return Math.hypot(x, Math.max(0, Math.abs(y) - shape.halfLength), z) <= shape.radius;
-    case "cylinder":
-      return Math.hypot(x, z) <= shape.radius && Math.abs(y) <= shape.halfHeight;
-    case "half-space":
-      return y <= 0;
-    default:
-      return Math.abs(x) + Math.abs(y) + Math.abs(z) <= 0.8;
-  }
-}
-
-test("a ray meets each shape where marching along it enters the solid", () => {
-  const step = 0.002;
-  for (const shape of [...solids, { kind: "half-space" } as const])
-    for (let n = 0; n < 150; ++n) {
-      const random = (k: number) => 2 * hash01(n * 7 + k + 1) - 1;
-      const origin: Vec3 = [3 * random(0), 2 + random(1), 3 * random(2)];
-      const aim: Vec3 = [0.6 * random(3), 0.9 * random(4), 0.6 * random(5)];
-      const towards = aim.map((x, i) => x - origin[i]);
-      const length = Math.hypot(...towards);
-      const direction = towards.map((x) => x / length) as Vec3;
-      let marched: number | null = null;
-      for (let t = 0; t < 8 && marched === null; t += step)
-        if (contains(shape, origin.map((x, i) => x + direction[i] * t) as Vec3)) marched = t;
-      const met = meet(shape, { origin, direction });
-      if (marched === null)
-        assert.ok(met === null || met > 7.99 || grazes(shape, origin, direction, met), `${shape.kind} ${n}: ${met}`);
-      else
-        assert.ok(
-          met !== null && Math.abs(met - marched) <= 2 * step,
-          `${shape.kind} ${n}: ${met}, marched ${marched}`,
-        );
-    }
-});
-
-/** The march may step over a corner that the ray only touches. */
-function grazes(shape: Shape, origin: Vec3, direction: Vec3, met: number): boolean {
-  return !contains(shape, origin.map((x, i) => x + direction[i] * (met + 0.004)) as Vec3);
-}
-
-test("rays along the axes, which divide by zero, meet boxes and cylinders", () => {
-  assert.equal(meet({ kind: "box", half: [1, 1, 1] }, { origin: [0, 5, 0], direction: [0, -1, 0] }), 4);
-  assert.equal(meet({ kind: "box", half: [1, 1, 1] }, { origin: [2, 5, 0], direction: [0, -1, 0] }), null);
-  assert.equal(meet({ kind: "cylinder", radius: 1, halfHeight: 2 }, { origin: [0.5, 5, 0], direction: [0, -1, 0] }), 3);
-  assert.equal(meet({ kind: "capsule", radius: 1, halfLength: 2 }, { origin: [0, 5, 0], direction: [0, -1, 0] }), 2);
-  assert.equal(meet({ kind: "sphere", radius: 1 }, { origin: [0, 0, 0], direction: [0, -1, 0] }), 0);
-});
+import { makeFixture } from "../fixtures";
 
 const recording = Recording.openNow(makeFixture({ frames: 100, columns: 8, courses: 6 }).file);
 const posesAt = (number: number) => {
@@ -98,7 +35,7 @@ test("a ray from above picks the body under it, not the ground and not a sensor"
   assert.equal(pick(tables, poses, { origin: [40, 5, 0], direction: [0, 1, 0] }), null);
 });
 
-test("a body that does not live cannot be picked", () => {
+test("a body that is not present cannot be picked", () => {
   const row = recording.tables.bodies.findIndex(({ name }) => name === "late");
   const over = (number: number) => {
     const poses = posesAt(number);
@@ -109,7 +46,7 @@ test("a body that does not live cannot be picked", () => {
   assert.equal(over(31), row);
 });
 
-test("world boxes hold their shapes tightly", () => {
+test("world boxes are tight bounds of their shapes", () => {
   const poses = posesAt(60);
   const { tables } = recording;
   const parts = makeParts(tables);
@@ -117,7 +54,7 @@ test("world boxes hold their shapes tightly", () => {
   for (const collider of tables.colliders) {
     const shape = tables.shapes[collider.shape];
     const box = worldBox(tables, collider, poses);
-    if (shape.kind === "half-space") {
+    if (traitsOf(shape).isGround) {
       assert.equal(box, null);
       continue;
     }
@@ -127,7 +64,7 @@ test("world boxes hold their shapes tightly", () => {
       for (const sign of [-1, 1]) {
         const plane = sign < 0 ? box.lo[axis] : box.hi[axis];
         assert.ok(Math.abs(plane - poses.positions[3 * collider.body + axis]) < 3);
-        // just outside each face nothing of the shape is met by rays that run along the face
+        // rays parallel to a face, just outside of it, miss the shape
         const origin: Vec3 = [...middle];
         origin[axis] = plane + sign * 0.001;
         const along = (axis + 1) % 3;
@@ -139,7 +76,7 @@ test("world boxes hold their shapes tightly", () => {
   }
 });
 
-test("between two frames bodies are between their places, and rotations stay unit", () => {
+test("between two frames positions are interpolated and rotations stay unit", () => {
   const [a, b] = [recording.frame(80), recording.frame(81)];
   const poses = new Poses(recording.tables.bodies.length);
   poses.mix(a, b, 0.25);
@@ -149,7 +86,7 @@ test("between two frames bodies are between their places, and rotations stay uni
     assert.ok(Math.abs(Math.hypot(...poses.rotations.subarray(4 * row, 4 * row + 4)) - 1) < 1e-5);
 });
 
-test("speed is what two frames say", () => {
+test("speed is computed from two frames", () => {
   const row = recording.tables.bodies.findIndex(({ name }) => name === "ball");
   const speed = speedBetween(row, recording.frame(1), recording.frame(3));
   const time = 2 / 60;
@@ -157,11 +94,11 @@ test("speed is what two frames say", () => {
   assert.equal(speedBetween(row, recording.frame(1), recording.frame(1)), null);
 });
 
-test("playback runs at its speed, stops at the end and begins again", () => {
+test("playback runs at its speed, stops at the end and restarts", () => {
   let changes = 0;
   const playback = new Playback(11, 0.1, () => ++changes);
   playback.advance(1);
-  assert.equal(playback.frame, 0, "it stands until it is started");
+  assert.equal(playback.frame, 0, "it does not move before it is started");
   playback.toggle();
   playback.advance(0.05);
   assert.equal(playback.frame, 0);
@@ -193,7 +130,7 @@ test("steps and seeks stay within the recording", () => {
   assert.equal(playback.speed, 0.1);
 });
 
-test("frame and camera survive the way through the address", () => {
+test("frame and camera round-trip through the address", () => {
   const place = { frame: 120, camera: [1.5, -2, 3.25, 0, 0.125, 1e6] };
   assert.deepEqual(readHash(writeHash(place)), place);
   assert.deepEqual(readHash("#f=-3&c=1,2,x"), { frame: null, camera: null });
