@@ -1,4 +1,4 @@
-/// THE list of engines, and Fase as one of them.
+/// THE list of engines, and the adapter for Fase.
 #include <fmt/format.h>
 
 #include "bench/engine.hpp"

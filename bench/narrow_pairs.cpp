@@ -1,4 +1,4 @@
-/// How long does one pair of shapes take, by its own function and by the general path? Google Benchmark; ns a pair.
+/// Benchmark of narrow-phase pairs: nanoseconds per pair, by its special function and by the general path.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -32,37 +32,37 @@ using namespace fase;
 constexpr float margin = 0.02f;
 constexpr std::size_t samples = 512;
 
-Vec3 in_cube(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
+Vec3 random_in_cube(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
 
-Quat turn(Random& random) {
+Quat random_rotation(Random& random) {
     for (;;) {
         const Quat q = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
         if (length_squared(q) > 0.01f && length_squared(q) < 1) return normalized(q);
     }
 }
 
-/// A hull of about 30 vertices around a ball of diameter 1.
+/// Returns a shape with its default size, about 1 m; for hulls, about 30 random vertices at 0.6 m from the centre.
 template <class S> S make(Random&) { return S{}; }
 template <> ConvexHull make<ConvexHull>(Random& random) {
     std::vector<Vec3> points;
-    for (int i = 0; i < 32; ++i) points.push_back(normalized(in_cube(random)) * 0.6f);
+    for (int i = 0; i < 32; ++i) points.push_back(normalized(random_in_cube(random)) * 0.6f);
     Result<ConvexHull> hull = build_convex_hull(points);
     return hull ? *hull : make<ConvexHull>(random);
 }
 
 template <class A, class B> struct Pairs {
     std::vector<std::pair<A, B>> shapes;
-    std::vector<LocalPose> places;
+    std::vector<LocalPose> poses;  // of b in a's frame
 };
 
-/// Random pairs that touch with less than 5 cm of overlap, all shapes about 1 m in size.
+/// Returns random pairs of shapes about 1 m in size that touch, with less than 5 cm of overlap.
 template <class A, class B> Pairs<A, B> touching() {
     Pairs<A, B> pairs;
     Random random(1);
     for (int i = 0; i < 8; ++i) pairs.shapes.emplace_back(make<A>(random), make<B>(random));
-    while (pairs.places.size() < samples) {
-        const LocalPose b_in_a = {in_cube(random) * 1.6f, turn(random)};
-        const auto& [a, b] = pairs.shapes[pairs.places.size() % pairs.shapes.size()];
+    while (pairs.poses.size() < samples) {
+        const LocalPose b_in_a = {random_in_cube(random) * 1.6f, random_rotation(random)};
+        const auto& [a, b] = pairs.shapes[pairs.poses.size() % pairs.shapes.size()];
         const narrow::Manifold manifold = narrow::collide(a, b, b_in_a, margin);
         if (manifold.count == 0) continue;
         float deepest = 0;
@@ -70,20 +70,20 @@ template <class A, class B> Pairs<A, B> touching() {
             const float s = manifold.points[static_cast<std::size_t>(k)].separation;
             deepest = s < deepest ? s : deepest;
         }
-        if (deepest > -0.05f) pairs.places.push_back(b_in_a);
+        if (deepest > -0.05f) pairs.poses.push_back(b_in_a);
     }
     return pairs;
 }
 
-/// Random pairs near each other that do not touch.
+/// Returns random pairs of near shapes that do not touch.
 template <class A, class B> Pairs<A, B> apart() {
     Pairs<A, B> pairs;
     Random random(2);
     for (int i = 0; i < 8; ++i) pairs.shapes.emplace_back(make<A>(random), make<B>(random));
-    while (pairs.places.size() < samples) {
-        const LocalPose b_in_a = {in_cube(random) * 1.3f, turn(random)};
-        const auto& [a, b] = pairs.shapes[pairs.places.size() % pairs.shapes.size()];
-        if (narrow::collide(a, b, b_in_a, margin).count == 0) pairs.places.push_back(b_in_a);
+    while (pairs.poses.size() < samples) {
+        const LocalPose b_in_a = {random_in_cube(random) * 1.3f, random_rotation(random)};
+        const auto& [a, b] = pairs.shapes[pairs.poses.size() % pairs.shapes.size()];
+        if (narrow::collide(a, b, b_in_a, margin).count == 0) pairs.poses.push_back(b_in_a);
     }
     return pairs;
 }
@@ -93,12 +93,12 @@ void time(benchmark::State& state, const Pairs<A, B>& pairs, const Collide& coll
     double points = 0;
     for (std::size_t i = 0; i < samples; ++i) {
         const auto& [a, b] = pairs.shapes[i % pairs.shapes.size()];
-        points += collide(a, b, pairs.places[i], margin).count;
+        points += collide(a, b, pairs.poses[i], margin).count;
     }
     std::size_t i = 0;
     for (auto _ : state) {
         const auto& [a, b] = pairs.shapes[i % pairs.shapes.size()];
-        benchmark::DoNotOptimize(collide(a, b, pairs.places[i], margin));
+        benchmark::DoNotOptimize(collide(a, b, pairs.poses[i], margin));
         i = i + 1 == samples ? 0 : i + 1;
     }
     state.counters["points"] = points / double(samples);
@@ -111,21 +111,22 @@ constexpr auto general = [](const auto& a, const auto& b, const LocalPose& p, fl
     return narrow::collide_general(a, b, p, m);
 };
 
+/// Registers the four benchmarks of a pair of shape types.
 template <class A, class B> void add() {
     const std::string name = std::string(A::name) + "/" + std::string(B::name);
-    const auto in_touch = touching<A, B>();
-    const auto away = apart<A, B>();
+    const auto contact = touching<A, B>();
+    const auto separate = apart<A, B>();
     benchmark::RegisterBenchmark((name + "/touching/special").c_str(),
-                                 [=](benchmark::State& state) { time(state, in_touch, special); });
+                                 [=](benchmark::State& state) { time(state, contact, special); });
     benchmark::RegisterBenchmark((name + "/touching/general").c_str(),
-                                 [=](benchmark::State& state) { time(state, in_touch, general); });
+                                 [=](benchmark::State& state) { time(state, contact, general); });
     benchmark::RegisterBenchmark((name + "/apart/special").c_str(),
-                                 [=](benchmark::State& state) { time(state, away, special); });
+                                 [=](benchmark::State& state) { time(state, separate, special); });
     benchmark::RegisterBenchmark((name + "/apart/general").c_str(),
-                                 [=](benchmark::State& state) { time(state, away, general); });
+                                 [=](benchmark::State& state) { time(state, separate, general); });
 }
 
-/// Boxes as they lie in a wall: flush but for small errors, half a box to the side; or turned about the vertical.
+/// Registers stacked boxes: as in a wall (half a box to the side, with small errors), and turned about the vertical.
 void add_stacked() {
     Pairs<Box, Box> wall, turned;
     wall.shapes = turned.shapes = {{Box{}, Box{}}};
@@ -134,9 +135,9 @@ void add_stacked() {
     for (std::size_t i = 0; i < samples; ++i) {
         const Quat nearly_upright = normalized(Quat{small(), small(), small(), 1});
         const float side = i % 2 == 0 ? 0.5f : -0.5f;
-        wall.places.push_back({{side + 10 * small(), 0.995f, 10 * small()}, nearly_upright});
+        wall.poses.push_back({{side + 10 * small(), 0.995f, 10 * small()}, nearly_upright});
         const Quat about_y = normalized(Quat{small(), random.between(-1, 1), small(), 1});
-        turned.places.push_back({{random.between(-0.9f, 0.9f), 0.995f, random.between(-0.9f, 0.9f)}, about_y});
+        turned.poses.push_back({{random.between(-0.9f, 0.9f), 0.995f, random.between(-0.9f, 0.9f)}, about_y});
     }
     benchmark::RegisterBenchmark("box/box/wall/special", [=](benchmark::State& state) { time(state, wall, special); });
     benchmark::RegisterBenchmark("box/box/wall/general", [=](benchmark::State& state) { time(state, wall, general); });
@@ -148,7 +149,7 @@ void add_stacked() {
 
 }  // namespace
 
-int main(int count, char** words) {
+int main(int argc, char** argv) {
     add_stacked();
     add<Sphere, Sphere>();
     add<Sphere, Box>();
@@ -166,8 +167,8 @@ int main(int count, char** words) {
     add<Cylinder, HalfSpace>();
     add<ConvexHull, ConvexHull>();
     add<ConvexHull, HalfSpace>();
-    benchmark::Initialize(&count, words);
-    if (benchmark::ReportUnrecognizedArguments(count, words)) return 2;
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A broad phase that `fase bench pairs` can measure: one of Fase, or one of another library.
+/// The interface of a broad phase that `fase bench pairs` measures, from Fase or another library.
 #include <memory>
 #include <span>
 #include <string>
@@ -12,27 +12,27 @@ namespace fase::bench {
 
 using broad::Pair;
 
-/// Boxes frame by frame, as many in each, known by their place in the list. What is set up once (memory, the choice of
-/// a world's size) is set up when it is made, with the first frame.
+/// Finds the pairs of a fixed number of boxes, frame by frame. A box is identified by its index. The constructor does
+/// the one-time work (memory, size of the world) with the first frame.
 class PairEngine {
 public:
     PairEngine() = default;
     PairEngine(const PairEngine&) = delete;
     PairEngine& operator=(const PairEngine&) = delete;
     virtual ~PairEngine() = default;
-    /// Takes the boxes of the next frame.
+    /// Updates the boxes to the next frame.
     virtual void update(std::span<const Aabb> boxes) = 0;
-    /// Appends each current pair once, smaller place first, but for those of two static boxes.
+    /// Appends each current pair once, smaller index first; skips pairs of two static boxes.
     virtual void find_pairs(std::vector<Pair>& out) = 0;
-    /// In words, for the tables.
+    /// The settings in a few words, for tables.
     [[nodiscard]] virtual std::string settings() const = 0;
-    /// 0: cannot say.
+    /// Memory in use; 0: unknown.
     [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 };
 
-/// What an engine is made of. All is kept by the caller for as long as the engine lives.
+/// The input of an engine. The data must outlive the engine.
 struct PairScene {
-    std::span<const Aabb> boxes;  ///< of the first frame; finite, not empty
+    std::span<const Aabb> boxes;  ///< first frame; finite, not empty
     std::span<const MotionState> motion_states;
     [[nodiscard]] bool both_static(std::size_t p, std::size_t q) const {
         return motion_states[p] == MotionState::Static && motion_states[q] == MotionState::Static;
@@ -42,13 +42,13 @@ struct PairScene {
 struct PairEngineInfo {
     std::string name;
     std::unique_ptr<PairEngine> (*make)(const PairScene& scene, const std::string& name);
-    bool peer = false;  ///< of another library
+    bool peer = false;  ///< from another library
 };
 
-/// All structures of Fase, then what there is of other libraries.
+/// THE list: all structures of Fase, then the broad phases of the peers found.
 [[nodiscard]] const std::vector<PairEngineInfo>& pair_engines();
 
-// Peers, one function a way of finding pairs; each is there when its library is.
+// Peers, one function per library; each is defined only when its library is found.
 std::unique_ptr<PairEngine> make_bullet_pairs(const PairScene& scene, const std::string& name);
 std::unique_ptr<PairEngine> make_ode_pairs(const PairScene& scene, const std::string& name);
 std::unique_ptr<PairEngine> make_fcl_pairs(const PairScene& scene, const std::string& name);

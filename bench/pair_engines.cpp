@@ -1,4 +1,4 @@
-/// THE list of broad phases that are measured, and those of Fase.
+/// THE list of measured broad phases, and the adapter for Fase's structures.
 #include <fmt/format.h>
 
 #include "bench/pair_engine.hpp"

@@ -1,4 +1,4 @@
-/// What `fase bench queries` measures: rays, overlaps and cameras a second, in each structure and in peers.
+/// The benchmark behind `fase bench queries`: the check of all answers, then alternating rounds.
 #include "bench/queries.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 namespace fase::bench {
 namespace {
 
-/// What the processor worked for this program, all threads together: other programs hardly count.
+/// Processor time of this process, all threads together; other programs hardly affect it.
 class Stopwatch {
 public:
     [[nodiscard]] double seconds() const { return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC; }
@@ -24,76 +24,75 @@ private:
     std::clock_t begin_ = std::clock();
 };
 
-/// What one contender answered to the first questions of one kind.
+/// The answers of one contender to the first queries of one kind.
 struct Answers {
     std::vector<query::Hit> hits;  // rays
-    Lists lists;                   // the others
+    AnswerLists lists;             // the others
     double seconds = 0;
     [[nodiscard]] std::size_t count(QueryKind kind) const {
         return kind == QueryKind::Rays ? hits.size() : lists.ends.size();
     }
 };
 
-std::size_t question_count(const Questions& questions, QueryKind kind) {
-    return kind == QueryKind::Rays    ? questions.rays.size()
-           : kind == QueryKind::Boxes ? questions.boxes.size()
-                                      : questions.frusta.size();
+std::size_t query_count(const SceneQueries& queries, QueryKind kind) {
+    return kind == QueryKind::Rays    ? queries.rays.size()
+           : kind == QueryKind::Boxes ? queries.boxes.size()
+                                      : queries.frusta.size();
 }
 
-void ask(const QueryContender& contender, const Questions& questions, QueryKind kind, std::size_t first,
-         std::size_t count, Answers& answers) {
+void answer(const QueryContender& contender, const SceneQueries& queries, QueryKind kind, std::size_t first,
+            std::size_t count, Answers& answers) {
     switch (kind) {
-        case QueryKind::Rays: contender.rays(std::span(questions.rays).subspan(first, count), answers.hits); break;
-        case QueryKind::Boxes: contender.boxes(std::span(questions.boxes).subspan(first, count), answers.lists); break;
-        case QueryKind::Frusta:
-            contender.frusta(std::span(questions.frusta).subspan(first, count), answers.lists);
-            break;
+        case QueryKind::Rays: contender.rays(std::span(queries.rays).subspan(first, count), answers.hits); break;
+        case QueryKind::Boxes: contender.boxes(std::span(queries.boxes).subspan(first, count), answers.lists); break;
+        case QueryKind::Frusta: contender.frusta(std::span(queries.frusta).subspan(first, count), answers.lists); break;
     }
 }
 
-/// Asks as much as the time allows, `most` questions at most. Boxes that move are moved within the time.
-void run(QueryContender& contender, const QueryScene& scene, QueryKind kind, std::size_t most, double seconds,
+/// Executes queries until the time is over, at most `max_queries`. The time includes moving the boxes.
+void run(QueryContender& contender, const QueryScene& scene, QueryKind kind, std::size_t max_queries, double seconds,
          Answers& answers) {
     answers.hits.clear();
     answers.lists.clear();
     answers.seconds = 0;
-    const std::size_t all = question_count(scene.questions, kind);
+    const std::size_t all = query_count(scene.queries, kind);
     std::vector<broad::Move> moved;
     const std::size_t pieces = scene.moves() ? scene.frames : std::max<std::size_t>(all / 64, 1);
     for (std::size_t piece = 0; piece < pieces && answers.seconds < seconds; ++piece) {
         const std::size_t first = all * piece / pieces, end = all * (piece + 1) / pieces;
-        if (end > most) break;
-        if (scene.moves()) scene.place(piece, moved);
+        if (end > max_queries) break;
+        if (scene.moves()) scene.boxes_at(piece, moved);
         const Stopwatch watch;
         if (scene.moves()) contender.move(moved);
-        ask(contender, scene.questions, kind, first, end - first, answers);
+        answer(contender, scene.queries, kind, first, end - first, answers);
         answers.seconds += watch.seconds();
     }
 }
 
-/// A number that does not depend on the order.
+/// Returns a hash that does not depend on the order.
 std::uint64_t digest(std::span<const broad::Proxy> proxies) {
     std::uint64_t sum = proxies.size();
     for (const broad::Proxy p : proxies) sum += mix_bits(p + 1ull);
     return sum;
 }
-std::span<const broad::Proxy> list(const Lists& lists, std::size_t i) {
+/// Returns the i-th answer.
+std::span<const broad::Proxy> list(const AnswerLists& lists, std::size_t i) {
     const std::size_t begin = i == 0 ? 0 : lists.ends[i - 1];
     return std::span(lists.proxies).subspan(begin, lists.ends[i] - begin);
 }
 
-bool same_hit(const query::Hit& a, const query::Hit& b, bool roughly) {
-    if (!roughly) return a == b;
-    if (!a.met() || !b.met()) return a.met() == b.met();
-    return std::abs(a.at - b.at) <= 1e-4f * (1 + b.at);
+bool same_hit(const query::Hit& a, const query::Hit& b, bool with_tolerance) {
+    if (!with_tolerance) return a == b;
+    if (!a.is_hit() || !b.is_hit()) return a.is_hit() == b.is_hit();
+    return std::abs(a.distance - b.distance) <= 1e-4f * (1 + b.distance);
 }
 
-/// How many of the answers are not those of the reference.
-std::size_t differing(const Answers& answers, const Answers& reference, QueryKind kind, bool roughly) {
+/// Returns the number of answers that differ from the reference.
+std::size_t differing(const Answers& answers, const Answers& reference, QueryKind kind, bool with_tolerance) {
     const std::size_t count = std::min(answers.count(kind), reference.count(kind));
     std::size_t differ = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const bool same = kind == QueryKind::Rays ? same_hit(answers.hits[i], reference.hits[i], roughly)
+        const bool same = kind == QueryKind::Rays ? same_hit(answers.hits[i], reference.hits[i], with_tolerance)
                                                   : digest(list(answers.lists, i)) == digest(list(reference.lists, i));
         differ += same ? 0 : 1;
     }
@@ -103,11 +102,11 @@ std::size_t differing(const Answers& answers, const Answers& reference, QueryKin
 std::size_t hits_in(const Answers& answers, QueryKind kind) {
     if (kind != QueryKind::Rays) return answers.lists.proxies.size();
     return static_cast<std::size_t>(
-        std::count_if(answers.hits.begin(), answers.hits.end(), [](const query::Hit& hit) { return hit.met(); }));
+        std::count_if(answers.hits.begin(), answers.hits.end(), [](const query::Hit& hit) { return hit.is_hit(); }));
 }
 
-Error unknown(const char* option, const std::string& found, const std::string& names) {
-    return {Status::BadArgument, option, fmt::format("found \"{}\", need one of {}", found, names), {}};
+Error unknown_name(const char* option, const std::string& found, const std::string& names) {
+    return {Status::BadArgument, option, fmt::format("found \"{}\"; expected one of {}", found, names), {}};
 }
 
 Result<std::vector<const QueryContenderInfo*>> contenders_named(const std::string& names) {
@@ -124,7 +123,7 @@ Result<std::vector<const QueryContenderInfo*>> contenders_named(const std::strin
         if (found == all.end()) {
             std::string known = "all";
             for (const QueryContenderInfo& info : all) known += ", " + info.name;
-            return unknown("--contender", name, known);
+            return unknown_name("--contender", name, known);
         }
         chosen.push_back(&*found);
         begin = end + 1;
@@ -132,14 +131,14 @@ Result<std::vector<const QueryContenderInfo*>> contenders_named(const std::strin
     return chosen;
 }
 
-/// A contender of the list, which must be there.
-std::unique_ptr<QueryContender> made(std::string_view name) {
+/// Creates a contender by a name that must be in the list.
+std::unique_ptr<QueryContender> make_contender(std::string_view name) {
     for (const QueryContenderInfo& info : query_contenders())
         if (info.name == name) return info.make(info.name);
     return nullptr;
 }
 
-/// One contender on one scene, with what it is asked.
+/// One contender on one scene.
 struct Entry {
     const QueryContenderInfo* info = nullptr;
     std::unique_ptr<QueryContender> contender;
@@ -149,24 +148,24 @@ struct Entry {
     std::vector<std::vector<double>> rates;  ///< by kind and round
 };
 
-/// What all are held against: the wide tree, a part of whose answers brute force has confirmed.
+/// Returns the reference answers: those of the wide BVH, after some of them passed a comparison with brute force.
 Result<std::vector<Answers>> reference_answers(const QueryScene& scene) {
-    const auto tree = made("wide_bvh"), judge = made("brute_force");
+    const auto tree = make_contender("wide_bvh"), brute_force = make_contender("brute_force");
     std::vector<Answers> reference(std::size(all_query_kinds));
-    constexpr double enough = 1e9;
+    constexpr double no_limit = 1e9;
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const QueryKind kind = all_query_kinds[k];
-        const std::size_t all = question_count(scene.questions, kind);
+        const std::size_t all = query_count(scene.queries, kind);
         tree->build(scene);
-        run(*tree, scene, kind, all, enough, reference[k]);
-        judge->build(scene);
+        run(*tree, scene, kind, all, no_limit, reference[k]);
+        brute_force->build(scene);
         const std::size_t pieces = scene.moves() ? scene.frames : std::max<std::size_t>(all / 64, 1);
-        Answers judged;
-        run(*judge, scene, kind, std::max(all / pieces, std::min<std::size_t>(all, 100)), enough, judged);
-        if (const std::size_t differ = differing(judged, reference[k], kind, false); differ != 0) {
+        Answers exact;
+        run(*brute_force, scene, kind, std::max(all / pieces, std::min<std::size_t>(all, 100)), no_limit, exact);
+        if (const std::size_t differ = differing(exact, reference[k], kind, false); differ != 0) {
             return Error{Status::BadArgument, "wide_bvh",
-                         fmt::format("found {} answers to {} that are not those of brute force", differ, name_of(kind)),
-                         "report it: a mistake of ours"};
+                         fmt::format("found {} answers to {} that differ from brute force", differ, name_of(kind)),
+                         "internal error; please report it"};
         }
     }
     return reference;
@@ -176,10 +175,10 @@ Result<std::vector<Answers>> reference_answers(const QueryScene& scene) {
 
 Result<std::vector<QueryScene>> query_scenes(const QueryOptions& options) {
     if (!options.scene.empty() && options.scene != "level" && options.scene != "static" && options.scene != "pile")
-        return unknown("--scene", options.scene, "level, static, pile");
-    const auto wanted = [&](std::string_view name) { return options.scene.empty() || options.scene == name; };
+        return unknown_name("--scene", options.scene, "level, static, pile");
+    const auto selected = [&](std::string_view name) { return options.scene.empty() || options.scene == name; };
     std::vector<QueryScene> scenes;
-    if (wanted("level")) {
+    if (selected("level")) {
         for (const std::string& mesh : options.meshes) {
             Result<QueryScene> level = level_from(mesh, options.counts);
             if (!level) return level.error();
@@ -187,8 +186,8 @@ Result<std::vector<QueryScene>> query_scenes(const QueryOptions& options) {
         }
         if (options.meshes.empty()) scenes.push_back(generated_level(options.counts));
     }
-    if (wanted("static")) scenes.push_back(static_boxes(options.counts));
-    if (wanted("pile")) scenes.push_back(stirred_pile(options.counts));
+    if (selected("static")) scenes.push_back(static_boxes(options.counts));
+    if (selected("pile")) scenes.push_back(stirred_pile(options.counts));
     return scenes;
 }
 
@@ -218,14 +217,14 @@ Result<std::vector<QueryRow>> measure_queries(const QueryScene& scene, const Que
         entry.build_ms = 1000 * watch.seconds();
     }
     Answers answers;
-    for (std::size_t round = 0; round <= rounds; ++round) {  // the first is for the check
+    for (std::size_t round = 0; round <= rounds; ++round) {  // round 0 is the check
         for (Entry& entry : entries) {
             if (!progress(done++, total, scene.name, entry.info->name)) return rows;
             entry.rates.resize(entry.kinds.size());
             for (std::size_t k = 0; k < entry.kinds.size(); ++k) {
                 const QueryKind kind = entry.kinds[k];
                 if (scene.moves()) entry.contender->build(scene);
-                run(*entry.contender, scene, kind, question_count(scene.questions, kind), options.seconds, answers);
+                run(*entry.contender, scene, kind, query_count(scene.queries, kind), options.seconds, answers);
                 if (round > 0) {
                     entry.rates[k].push_back(static_cast<double>(answers.count(kind)) /
                                              std::max(answers.seconds, 1e-6));
@@ -236,14 +235,14 @@ Result<std::vector<QueryRow>> measure_queries(const QueryScene& scene, const Que
                 row.contender = entry.info->name;
                 row.settings = entry.contender->settings();
                 row.kind = name_of(kind);
-                row.things = scene.boxes.size();
+                row.items = scene.boxes.size();
                 row.rounds = options.rounds;
-                row.asked = row.compared = answers.count(kind);
+                row.queries = row.compared = answers.count(kind);
                 row.hits = hits_in(answers, kind);
                 row.build_ms = entry.build_ms;
                 row.bytes = entry.contender->bytes();
                 row.differ = differing(answers, (*reference)[static_cast<std::size_t>(kind)], kind,
-                                       entry.contender->rounds_its_own_way(scene));
+                                       entry.contender->rounds_differently(scene));
             }
         }
     }

@@ -1,4 +1,4 @@
-/// THE list of what answers queries, and what of it is ours.
+/// THE list of contenders for queries, and those of Fase.
 #include <algorithm>
 
 #include "bench/query_contender.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 using broad::Proxy;
 
-/// Any structure of the registry.
+/// A structure of the registry.
 class RegistryContender final : public QueryContender {
 public:
     explicit RegistryContender(std::string_view name) : name_(name) {}
@@ -46,13 +46,13 @@ public:
             out.push_back(hit.value_or(query::Hit{}));
         }
     }
-    void boxes(std::span<const Aabb> boxes, Lists& out) const override {
+    void boxes(std::span<const Aabb> boxes, AnswerLists& out) const override {
         for (const Aabb& box : boxes) {
             structure_.overlapping(box, out.proxies);
             out.ends.push_back(out.proxies.size());
         }
     }
-    void frusta(std::span<const Frustum> frusta, Lists& out) const override {
+    void frusta(std::span<const Frustum> frusta, AnswerLists& out) const override {
         for (const Frustum& frustum : frusta) {
             structure_.cull(broad::FrustumRegion(frustum), [&](std::span<const Proxy> proxies, bool) {
                 out.proxies.insert(out.proxies.end(), proxies.begin(), proxies.end());
@@ -60,7 +60,7 @@ public:
             out.ends.push_back(out.proxies.size());
         }
     }
-    [[nodiscard]] std::string settings() const override { return "as it comes"; }
+    [[nodiscard]] std::string settings() const override { return "default"; }
     [[nodiscard]] std::size_t bytes() const override { return structure_.bytes(); }
 
 private:
@@ -69,7 +69,7 @@ private:
     broad::AnyStructure structure_;
 };
 
-/// Triangles eight at a time, over the wide tree.
+/// RayMesh: triangles in blocks of eight in the wide BVH.
 class MeshContender final : public QueryContender {
 public:
     [[nodiscard]] bool offers(QueryKind kind, const QueryScene& scene) const override {
@@ -82,9 +82,9 @@ public:
     void rays(std::span<const Ray> rays, std::vector<query::Hit>& out) const override {
         for (const Ray& ray : rays) out.push_back(mesh_.nearest_hit(ray).value_or(query::Hit{}));
     }
-    void boxes(std::span<const Aabb>, Lists&) const override {}
-    void frusta(std::span<const Frustum>, Lists&) const override {}
-    [[nodiscard]] bool rounds_its_own_way(const QueryScene&) const override { return true; }
+    void boxes(std::span<const Aabb>, AnswerLists&) const override {}
+    void frusta(std::span<const Frustum>, AnswerLists&) const override {}
+    [[nodiscard]] bool rounds_differently(const QueryScene&) const override { return true; }
     [[nodiscard]] std::string settings() const override { return "wide_bvh over blocks of 8 triangles, watertight"; }
     [[nodiscard]] std::size_t bytes() const override { return mesh_.bytes(); }
 
@@ -92,8 +92,8 @@ private:
     query::RayMesh mesh_;
 };
 
-/// What is seen lies ready and is copied out: no way to find it can be quicker.
-class Copying final : public QueryContender {
+/// Copies precomputed answers: a lower bound for the time of any frustum query.
+class CopyContender final : public QueryContender {
 public:
     [[nodiscard]] bool offers(QueryKind kind, const QueryScene& scene) const override {
         return kind == QueryKind::Frusta && !scene.moves();
@@ -102,27 +102,27 @@ public:
         RegistryContender tree("wide_bvh");
         tree.build(scene);
         answers_.clear();
-        tree.frusta(scene.questions.frusta, answers_);
-        first_ = scene.questions.frusta.data();
+        tree.frusta(scene.queries.frusta, answers_);
+        first_ = scene.queries.frusta.data();
     }
     void move(std::span<const broad::Move>) override {}
     void rays(std::span<const Ray>, std::vector<query::Hit>&) const override {}
-    void boxes(std::span<const Aabb>, Lists&) const override {}
-    /// Of the scene's own frusta alone.
-    void frusta(std::span<const Frustum> frusta, Lists& out) const override {
+    void boxes(std::span<const Aabb>, AnswerLists&) const override {}
+    /// Only for frusta of the scene that it was built with.
+    void frusta(std::span<const Frustum> frusta, AnswerLists& out) const override {
         for (const Frustum& frustum : frusta) {
-            const auto at = static_cast<std::size_t>(&frustum - first_);
+            const auto index = static_cast<std::size_t>(&frustum - first_);
             const auto begin = answers_.proxies.begin();
             out.proxies.insert(out.proxies.end(),
-                               begin + static_cast<std::ptrdiff_t>(at == 0 ? 0 : answers_.ends[at - 1]),
-                               begin + static_cast<std::ptrdiff_t>(answers_.ends[at]));
+                               begin + static_cast<std::ptrdiff_t>(index == 0 ? 0 : answers_.ends[index - 1]),
+                               begin + static_cast<std::ptrdiff_t>(answers_.ends[index]));
             out.ends.push_back(out.proxies.size());
         }
     }
-    [[nodiscard]] std::string settings() const override { return "the floor: ids that lie ready are copied out"; }
+    [[nodiscard]] std::string settings() const override { return "lower bound: copies ready ids"; }
 
 private:
-    Lists answers_;
+    AnswerLists answers_;
     const Frustum* first_ = nullptr;
 };
 
@@ -140,7 +140,7 @@ std::vector<QueryContenderInfo> make_list() {
         list.push_back({std::string(S::info.name), make<RegistryContender>});
     });
     list.push_back({"ray_mesh", make<MeshContender>});
-    list.push_back({"copy", make<Copying>});
+    list.push_back({"copy", make<CopyContender>});
 #ifdef FASE_PEER_EMBREE
     list.push_back({"embree", make_embree});
 #endif
@@ -165,16 +165,16 @@ float distance_to_triangle(const TriangleMesh& mesh, Proxy triangle, const Ray& 
     const Vec3d a = corner(0), ab = corner(1) - a, ac = corner(2) - a, d = to_double(ray.direction);
     const Vec3d p = cross(d, ac);
     const double det = dot(ab, p);
-    if (det == 0) return broad::beyond;
+    if (det == 0) return broad::infinite_distance;
     const double inverse = 1 / det;
     const Vec3d from_a = ray.origin - a;
     const double u = dot(from_a, p) * inverse;
-    if (u < 0 || u > 1) return broad::beyond;
+    if (u < 0 || u > 1) return broad::infinite_distance;
     const Vec3d q = cross(from_a, ab);
     const double v = dot(d, q) * inverse;
-    if (v < 0 || u + v > 1) return broad::beyond;
+    if (v < 0 || u + v > 1) return broad::infinite_distance;
     const double t = dot(ac, q) * inverse;
-    return t >= 0 ? static_cast<float>(t) : broad::beyond;
+    return t >= 0 ? static_cast<float>(t) : broad::infinite_distance;
 }
 
 }  // namespace fase::bench

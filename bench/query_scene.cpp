@@ -1,4 +1,4 @@
-/// The sets that `fase bench queries` asks about, and what it asks.
+/// Generates the scenes of `fase bench queries` and their queries; reads OBJ files.
 #include "bench/query_scene.hpp"
 
 #include <fmt/format.h>
@@ -22,15 +22,15 @@ Vec3 point_in(Random& random, const Aabb& box) {
                 z = random.between(box.lo.z, box.hi.z);
     return {x, y, z};
 }
-Vec3 any_direction(Random& random) {
+Vec3 random_direction(Random& random) {
     for (;;) {
-        const Vec3d way = to_double(point_in(random, {{-1, -1, -1}, {1, 1, 1}}));
-        const double size = length(way);
-        if (size > 0.1 && size <= 1) return to_float(way * (1 / size));
+        const Vec3d point = to_double(point_in(random, {{-1, -1, -1}, {1, 1, 1}}));
+        const double size = length(point);
+        if (size > 0.1 && size <= 1) return to_float(point * (1 / size));
     }
 }
 
-/// What a camera sees that is 70 degrees wide and 42 high.
+/// The frustum of a camera with a view 70 degrees wide and 42 degrees high.
 Frustum camera(Vec3d eye, Vec3d ahead, double far) {
     const Vec3d beside = cross(ahead, Vec3d{0, 1, 0});
     const Vec3d right = beside * (1 / length(beside)), up = cross(right, ahead);
@@ -46,8 +46,8 @@ Frustum camera(Vec3d eye, Vec3d ahead, double far) {
     return frustum;
 }
 
-/// Rays and cameras from anywhere within the things' bounds, boxes twice as large as theirs in the mean.
-Questions strew(const std::vector<broad::Move>& boxes, const QueryCounts& counts) {
+/// Generates rays and cameras at random points in the bounds of the boxes, and query boxes of twice their mean size.
+SceneQueries random_queries(const std::vector<broad::Move>& boxes, const QueryCounts& counts) {
     Random random(7);
     Aabb bounds;
     Vec3d sizes;
@@ -56,30 +56,30 @@ Questions strew(const std::vector<broad::Move>& boxes, const QueryCounts& counts
         sizes = sizes + to_double(extent(m.box));
     }
     const Vec3 half = to_float(sizes * (1 / static_cast<double>(std::max<std::size_t>(boxes.size(), 1))));
-    Questions questions;
+    SceneQueries queries;
     for (std::size_t i = 0; i < counts.rays; ++i) {
         Ray ray;
         ray.origin = to_double(point_in(random, bounds));
-        ray.direction = any_direction(random);
-        questions.rays.push_back(ray);
+        ray.direction = random_direction(random);
+        queries.rays.push_back(ray);
     }
     for (std::size_t i = 0; i < counts.boxes; ++i) {
         const Vec3 at = point_in(random, bounds);
-        questions.boxes.push_back({at - half, at + half});
+        queries.boxes.push_back({at - half, at + half});
     }
     const double far = length(to_double(extent(bounds)));
     for (std::size_t i = 0; i < counts.frusta; ++i) {
-        Vec3d ahead = to_double(any_direction(random));
+        Vec3d ahead = to_double(random_direction(random));
         ahead.y *= 0.3;
         if (std::abs(ahead.x) + std::abs(ahead.z) < 0.1) ahead.x = 1;
         ahead = ahead * (1 / length(ahead));
-        questions.frusta.push_back(camera(to_double(point_in(random, bounds)), ahead, far));
+        queries.frusta.push_back(camera(to_double(point_in(random, bounds)), ahead, far));
     }
-    return questions;
+    return queries;
 }
 
-/// Boxes around the triangles.
-void box_triangles(QueryScene& scene) {
+/// Adds the bounding box of each triangle.
+void add_triangle_boxes(QueryScene& scene) {
     for (std::size_t i = 0; i + 2 < scene.mesh.indices.size(); i += 3) {
         Aabb box;
         for (std::size_t k = i; k < i + 3; ++k) {
@@ -90,7 +90,7 @@ void box_triangles(QueryScene& scene) {
     }
 }
 
-/// The words of a line, one after the other; "" at its end.
+/// Returns the next word of a line and removes it; "" at the end.
 std::string_view next_word(std::string_view& line) {
     const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
     const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
@@ -99,7 +99,7 @@ std::string_view next_word(std::string_view& line) {
     return word;
 }
 
-bool read_corner(std::string_view line, std::vector<Vec3>& positions) {
+bool read_vertex(std::string_view line, std::vector<Vec3>& positions) {
     Vec3 at;
     for (int axis = 0; axis < 3; ++axis) {
         const std::string_view word = next_word(line);
@@ -113,7 +113,7 @@ bool read_corner(std::string_view line, std::vector<Vec3>& positions) {
 bool read_face(std::string_view line, TriangleMesh& mesh) {
     std::vector<std::uint32_t> corners;
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
-        long long number = 0;  // "7", "7/1/3"; from 1; negative: from the last
+        long long number = 0;  // "7" or "7/1/3"; counts from 1; negative: from the last vertex
         const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
         const auto count = static_cast<long long>(mesh.positions.size());
         const long long index = number < 0 ? count + number : number - 1;
@@ -127,13 +127,13 @@ bool read_face(std::string_view line, TriangleMesh& mesh) {
 
 }  // namespace
 
-void QueryScene::place(std::size_t frame, std::vector<broad::Move>& out) const {
+void QueryScene::boxes_at(std::size_t frame, std::vector<broad::Move>& out) const {
     out = boxes;
     for (broad::Move& m : out) {
         const Vec3d at = to_double(centre(m.box));
         const double from_axis = std::sqrt(at.x * at.x + at.z * at.z);
         const double angle = 0.4 * static_cast<double>(frame) / (1 + from_axis);
-        // A turn without cosines: the same on every machine.
+        // A rotation without sine and cosine: the same bits on every machine.
         const double half = angle / 2, scale = 1 / (1 + half * half);
         const double c = (1 - half * half) * scale, s = 2 * half * scale;
         const Vec3 by = to_float(Vec3d{c * at.x - s * at.z, at.y, s * at.x + c * at.z} - at);
@@ -144,7 +144,7 @@ void QueryScene::place(std::size_t frame, std::vector<broad::Move>& out) const {
 QueryScene static_boxes(const QueryCounts& counts) {
     QueryScene scene;
     scene.name = "static";
-    const std::size_t count = counts.things != 0 ? counts.things : 1000000;
+    const std::size_t count = counts.items != 0 ? counts.items : 1000000;
     const float side = 5 * static_cast<float>(std::cbrt(static_cast<double>(count)));
     Random random(1);
     for (broad::Proxy p = 0; p < count; ++p) {
@@ -152,7 +152,7 @@ QueryScene static_boxes(const QueryCounts& counts) {
         const Vec3 half = point_in(random, {{0.1f, 0.1f, 0.1f}, {1, 1, 1}});
         scene.boxes.push_back({p, {at - half, at + half}});
     }
-    scene.questions = strew(scene.boxes, counts);
+    scene.queries = random_queries(scene.boxes, counts);
     return scene;
 }
 
@@ -160,7 +160,7 @@ QueryScene stirred_pile(const QueryCounts& counts) {
     QueryScene scene;
     scene.name = "pile";
     scene.frames = pile_frames;
-    const std::size_t count = std::max<std::size_t>((counts.things != 0 ? counts.things : 1000000) / 50, 1);
+    const std::size_t count = std::max<std::size_t>((counts.items != 0 ? counts.items : 1000000) / 50, 1);
     const float radius = 1.1f * static_cast<float>(std::cbrt(static_cast<double>(count)));
     Random random(2);
     while (scene.boxes.size() < count) {
@@ -170,7 +170,7 @@ QueryScene stirred_pile(const QueryCounts& counts) {
         const Vec3 half = point_in(random, {{0.2f, 0.2f, 0.2f}, {0.5f, 0.5f, 0.5f}});
         scene.boxes.push_back({static_cast<broad::Proxy>(scene.boxes.size()), {at - half, at + half}});
     }
-    scene.questions = strew(scene.boxes, counts);
+    scene.queries = random_queries(scene.boxes, counts);
     return scene;
 }
 
@@ -186,19 +186,19 @@ Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& co
         std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         const std::string_view word = next_word(line);
-        const bool fine = word == "v"   ? read_corner(line, scene.mesh.positions)
-                          : word == "f" ? read_face(line, scene.mesh)
-                                        : true;
-        if (fine) continue;
+        const bool valid = word == "v"   ? read_vertex(line, scene.mesh.positions)
+                           : word == "f" ? read_face(line, scene.mesh)
+                                         : true;
+        if (valid) continue;
         return Error{Status::Format,
                      fmt::format("{}:{}", obj_file, number),
-                     word == "v" ? "found a corner without three numbers, need x y z"
-                                 : "found a face that names what is not there, need three corners or more",
+                     word == "v" ? "found a vertex without three numbers; expected x y z"
+                                 : "found a face with missing vertices; expected three or more that exist",
                      {}};
     }
-    if (scene.mesh.indices.empty()) return Error{Status::Format, obj_file, "found no faces, need at least one", {}};
-    box_triangles(scene);
-    scene.questions = strew(scene.boxes, counts);
+    if (scene.mesh.indices.empty()) return Error{Status::Format, obj_file, "found no faces; expected at least one", {}};
+    add_triangle_boxes(scene);
+    scene.queries = random_queries(scene.boxes, counts);
     return scene;
 }
 
@@ -220,8 +220,8 @@ QueryScene generated_level(const QueryCounts& counts) {
             scene.mesh.indices.insert(scene.mesh.indices.end(), {a, c, b, b, c, d});
         }
     }
-    box_triangles(scene);
-    scene.questions = strew(scene.boxes, counts);
+    add_triangle_boxes(scene);
+    scene.queries = random_queries(scene.boxes, counts);
     return scene;
 }
 

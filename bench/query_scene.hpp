@@ -1,5 +1,5 @@
 #pragma once
-/// The sets that `fase bench queries` asks about, and what it asks.
+/// The scenes of `fase bench queries` and their queries.
 #include <span>
 #include <string>
 #include <vector>
@@ -11,38 +11,39 @@
 
 namespace fase::bench {
 
-/// What is asked about a set of things, in the order in which it is asked.
-struct Questions {
-    std::vector<Ray> rays;        ///< the nearest thing
-    std::vector<Aabb> boxes;      ///< all boxes that overlap
+/// The queries on a scene, in execution order.
+struct SceneQueries {
+    std::vector<Ray> rays;        ///< nearest hit
+    std::vector<Aabb> boxes;      ///< all overlapping boxes
     std::vector<Frustum> frusta;  ///< all boxes that a camera may see
 };
 
-/// Things in boxes: triangles, or the boxes themselves. They stand still, or move from frame to frame.
+/// A set of items with boxes: triangles, or the boxes themselves. Static, or moving in each frame.
 struct QueryScene {
-    std::string name;                ///< "static", "pile", or "level: " and the file's name
+    std::string name;                ///< "static", "pile", "level", or "level: " and the file name
     std::vector<broad::Move> boxes;  ///< proxies 0, 1, 2 …
-    TriangleMesh mesh;               ///< empty: the boxes are the things; else box i is that of triangle i
-    std::size_t frames = 1;          ///< above 1: all boxes move; the questions of each kind are shared among frames
-    Questions questions;
+    TriangleMesh mesh;               ///< empty: the boxes are the items; else box i bounds triangle i
+    std::size_t frames = 1;          ///< above 1: all boxes move; each frame executes a share of each kind of query
+    SceneQueries queries;
 
     [[nodiscard]] bool moves() const { return frames > 1; }
-    /// Where all boxes are in a frame; for scenes that move.
-    void place(std::size_t frame, std::vector<broad::Move>& out) const;
+    /// Sets `out` to the boxes in a frame. Only for moving scenes.
+    void boxes_at(std::size_t frame, std::vector<broad::Move>& out) const;
 };
 
 struct QueryCounts {
-    std::size_t things = 0;  ///< boxes of "static", 0: a million; a fiftieth of it in "pile"
+    std::size_t items = 0;  ///< boxes of "static"; 0: a million; "pile" has a fiftieth of it
     std::size_t rays = 100000, boxes = 100000, frusta = 200;
 };
 
-/// Boxes of 0.2 to 2 m, strewn evenly; eight of ten rays meet one.
+/// Boxes of 0.2 to 2 m, uniformly distributed; eight of ten rays hit one.
 [[nodiscard]] QueryScene static_boxes(const QueryCounts& counts);
-/// A heap of boxes that is stirred: what is farther out turns more slowly, so that neighbours part; 60 frames.
+/// A conical pile of boxes that rotates about its axis, more slowly farther out, so that neighbours separate; 60
+/// frames.
 [[nodiscard]] QueryScene stirred_pile(const QueryCounts& counts);
-/// The triangles of a file in Wavefront's OBJ format (polygons are cut into fans). Errors: Io; Format with the line.
+/// Reads the triangles of a Wavefront OBJ file; polygons become fans. Errors: Io; Format with the line.
 [[nodiscard]] Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& counts);
-/// A level of our own: hilly ground, with towers.
+/// A generated level: uneven ground with towers, 45,000 triangles.
 [[nodiscard]] QueryScene generated_level(const QueryCounts& counts);
 
 }  // namespace fase::bench

@@ -1,4 +1,4 @@
-/// What `fase bench step` measures: whole steps of the same scenes, in Fase and in its peers.
+/// The benchmark behind `fase bench step`: alternating turns of the engines, rounds, and the end state.
 #include "bench/step.hpp"
 
 #include <fmt/format.h>
@@ -14,38 +14,40 @@
 namespace fase::bench {
 namespace {
 
-/// Steps that an engine does before another has its turn: few, so that noise meets all; several, so that each works
-/// with its own data in the caches most of the time.
-constexpr std::uint64_t steps_a_turn = 10;
+/// Steps per turn of an engine: few, so that noise affects all engines alike; several, so that an engine's own data is
+/// in the caches most of the time.
+constexpr std::uint64_t steps_per_turn = 10;
 
 constexpr StepScene all_scenes[]{{"large_pyramid", 200}, {"many_pyramids", 200}, {"hull_pile", 300}, {"washer", 300}};
 
-template <class List> Error unknown(const char* what, const std::string& found, const List& list, const char* also) {
-    std::string names = also;
+/// Returns the error for an unknown name. `special`: a name that is valid but not in the list, or "".
+template <class List>
+Error unknown_name(const char* option, const std::string& found, const List& list, const char* special) {
+    std::string names = special;
     for (const auto& one : list) names += (names.empty() ? "" : ", ") + std::string(one.name);
-    return {Status::BadArgument, what, fmt::format("found \"{}\", need one of {}", found, names), {}};
+    return {Status::BadArgument, option, fmt::format("found \"{}\"; expected one of {}", found, names), {}};
 }
 
-/// The engines of "all" or of a list like "fase,bullet", in the order of THE list.
+/// Returns the engines for "all" or a list like "fase,bullet", in the order of THE list.
 Result<std::vector<const EngineInfo*>> engines_named(const std::string& names) {
-    std::vector<bool> wanted(engines().size(), names == "all");
+    std::vector<bool> selected(engines().size(), names == "all");
     for (std::size_t begin = 0; names != "all" && begin <= names.size();) {
         const std::size_t end = std::min(names.find(',', begin), names.size());
         const std::string name = names.substr(begin, end - begin);
         const auto engine =
             std::find_if(engines().begin(), engines().end(), [&](const EngineInfo& one) { return one.name == name; });
-        if (engine == engines().end()) return unknown("--engine", name, engines(), "all");
-        wanted[static_cast<std::size_t>(engine - engines().begin())] = true;
+        if (engine == engines().end()) return unknown_name("--engine", name, engines(), "all");
+        selected[static_cast<std::size_t>(engine - engines().begin())] = true;
         begin = end + 1;
     }
     std::vector<const EngineInfo*> chosen;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-        if (wanted[i]) chosen.push_back(&engines()[i]);
+    for (std::size_t i = 0; i < selected.size(); ++i) {
+        if (selected[i]) chosen.push_back(&engines()[i]);
     }
     return chosen;
 }
 
-/// One engine in the run of one scene.
+/// One engine on one scene.
 struct Contender {
     const EngineInfo* info = nullptr;
     std::unique_ptr<Engine> engine;
@@ -53,19 +55,19 @@ struct Contender {
     StepRow row;
 };
 
-/// Where the run of all scenes stands.
-struct Course {
+/// Progress of the run over all scenes.
+struct Run {
     const StepOptions& options;
     const StepProgress& progress;
     std::uint64_t done = 0, total = 0;
     bool stopped = false;
 };
 
-Result<void> take_turn(Course& course, Contender& contender, std::uint64_t steps) {
+Result<void> run_turn(Run& run, Contender& contender, std::uint64_t steps) {
     using Clock = std::chrono::steady_clock;
     for (std::uint64_t i = 0; i < steps; ++i) {
-        if (!course.progress(course.done++, course.total, contender.row.scene, contender.row.engine)) {
-            course.stopped = true;
+        if (!run.progress(run.done++, run.total, contender.row.scene, contender.row.engine)) {
+            run.stopped = true;
             return {};
         }
         const Clock::time_point begin = Clock::now();
@@ -75,16 +77,16 @@ Result<void> take_turn(Course& course, Contender& contender, std::uint64_t steps
     return {};
 }
 
-/// Writes down how a round ended.
-void note_end(Contender& contender, const std::vector<Vec3d>& begin, int round) {
+/// Records the state of an engine at the end of a round.
+void record_end(Contender& contender, const std::vector<Vec3d>& start, int round) {
     StepRow& row = contender.row;
     std::vector<Vec3d> centres;
     contender.engine->read_centres(centres);
-    double top = centres.empty() ? 0 : centres.front().y, sum = 0, way = 0;
+    double top = centres.empty() ? 0 : centres.front().y, sum = 0, drift = 0;
     for (std::size_t i = 0; i < centres.size(); ++i) {
         top = std::max(top, centres[i].y);
         sum += centres[i].y;
-        way += length(centres[i] - begin[i]);
+        drift += length(centres[i] - start[i]);
     }
     const double count = static_cast<double>(std::max<std::size_t>(centres.size(), 1));
     const std::optional<std::uint64_t> hash = contender.engine->hash();
@@ -92,15 +94,15 @@ void note_end(Contender& contender, const std::vector<Vec3d>& begin, int round) 
     row.hash = hash;
     row.top_height = top;
     row.mean_height = sum / count;
-    row.drift = way / count;
+    row.drift = drift / count;
     row.bodies = centres.size();
     row.contacts = contender.engine->contacts();
     row.threads = contender.engine->threads();
     row.settings = contender.engine->settings();
 }
 
-/// Boils the times of all rounds down to the row.
-void sum_up(Contender& contender) {
+/// Computes the row's times from those of all rounds.
+void summarise(Contender& contender) {
     std::vector<double> means, medians, worsts;
     for (const std::vector<double>& round : contender.ms) {
         const Timing timing = timing_of(round);
@@ -114,38 +116,38 @@ void sum_up(Contender& contender) {
     row.mean_low = *low;
     row.mean_high = *high;
     for (std::size_t i = 0; i < contender.ms.front().size(); ++i) {
-        double least = contender.ms.front()[i];
-        for (const std::vector<double>& round : contender.ms) least = std::min(least, round[i]);
-        row.least += least / static_cast<double>(contender.ms.front().size());
+        double fastest = contender.ms.front()[i];
+        for (const std::vector<double>& round : contender.ms) fastest = std::min(fastest, round[i]);
+        row.min_ms += fastest / static_cast<double>(contender.ms.front().size());
     }
 }
 
-Result<void> run_round(Course& course, const scene::Scene& scene, const EngineOptions& engine_options,
+Result<void> run_round(Run& run, const scene::Scene& scene, const EngineOptions& engine_options,
                        std::vector<Contender>& contenders, std::uint64_t steps, int round) {
-    std::vector<std::vector<Vec3d>> begins(contenders.size());
+    std::vector<std::vector<Vec3d>> starts(contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         Result<std::unique_ptr<Engine>> made = contenders[i].info->make(scene, engine_options);
         if (!made) return made.error();
         contenders[i].engine = *std::move(made);
         contenders[i].ms.emplace_back();
-        contenders[i].engine->read_centres(begins[i]);
+        contenders[i].engine->read_centres(starts[i]);
     }
-    for (std::uint64_t at = 0; at < steps; at += steps_a_turn) {
+    for (std::uint64_t step = 0; step < steps; step += steps_per_turn) {
         for (Contender& contender : contenders) {
-            const std::uint64_t turn = std::min(steps_a_turn, steps - at);
-            if (auto taken = take_turn(course, contender, turn); !taken) return taken.error();
-            if (course.stopped) return {};
+            const std::uint64_t turn = std::min(steps_per_turn, steps - step);
+            if (auto done = run_turn(run, contender, turn); !done) return done.error();
+            if (run.stopped) return {};
         }
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        note_end(contenders[i], begins[i], round);
+        record_end(contenders[i], starts[i], round);
         contenders[i].engine.reset();
     }
     return {};
 }
 
-Result<std::vector<StepRow>> run_scene(Course& course, const StepScene& kind, std::vector<Contender> contenders) {
-    const StepOptions& options = course.options;
+Result<std::vector<StepRow>> run_scene(Run& run, const StepScene& kind, std::vector<Contender> contenders) {
+    const StepOptions& options = run.options;
     const Result<scene::Scene> scene = scene::generate(kind.name, {.count = options.count});
     if (!scene) return scene.error();
     EngineOptions engine_options{scene::settings_for(*scene), options.threads};
@@ -157,13 +159,13 @@ Result<std::vector<StepRow>> run_scene(Course& course, const StepScene& kind, st
         contender.row.steps = steps;
         contender.row.rounds = options.rounds;
     }
-    for (int round = 0; round < options.rounds && !course.stopped; ++round) {
-        if (auto done = run_round(course, *scene, engine_options, contenders, steps, round); !done) return done.error();
+    for (int round = 0; round < options.rounds && !run.stopped; ++round) {
+        if (auto done = run_round(run, *scene, engine_options, contenders, steps, round); !done) return done.error();
     }
     std::vector<StepRow> rows;
-    if (course.stopped) return rows;
+    if (run.stopped) return rows;
     for (Contender& contender : contenders) {
-        sum_up(contender);
+        summarise(contender);
         rows.push_back(std::move(contender.row));
     }
     return rows;
@@ -177,24 +179,23 @@ Result<std::vector<StepRow>> measure_steps(const StepOptions& options, const Ste
     const Result<std::vector<const EngineInfo*>> named = engines_named(options.engine);
     if (!named) return named.error();
     const std::vector<const EngineInfo*>& chosen = *named;
-    Course course{options, progress};
+    Run run{options, progress};
     std::vector<StepScene> scenes;
     for (const StepScene& scene : step_scenes()) {
         if (!options.scene.empty() && options.scene != scene.name) continue;
         scenes.push_back(scene);
-        course.total +=
-            options.steps.value_or(scene.steps) * chosen.size() * static_cast<std::uint64_t>(options.rounds);
+        run.total += options.steps.value_or(scene.steps) * chosen.size() * static_cast<std::uint64_t>(options.rounds);
     }
-    if (scenes.empty()) return unknown("--scene", options.scene, step_scenes(), "");
+    if (scenes.empty()) return unknown_name("--scene", options.scene, step_scenes(), "");
 
     std::vector<StepRow> rows;
     for (const StepScene& scene : scenes) {
         std::vector<Contender> contenders(chosen.size());
         for (std::size_t i = 0; i < chosen.size(); ++i) contenders[i].info = chosen[i];
-        Result<std::vector<StepRow>> measured = run_scene(course, scene, std::move(contenders));
+        Result<std::vector<StepRow>> measured = run_scene(run, scene, std::move(contenders));
         if (!measured) return measured.error();
         for (StepRow& row : *measured) rows.push_back(std::move(row));
-        if (course.stopped) break;
+        if (run.stopped) break;
     }
     return rows;
 }

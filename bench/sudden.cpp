@@ -1,4 +1,4 @@
-/// Events made by rule, and the frames around them.
+/// The events of `fase bench sudden` and the measurement of the frames around them.
 #include "bench/sudden.hpp"
 
 #include <fmt/format.h>
@@ -15,15 +15,15 @@
 namespace fase::bench {
 namespace {
 
-/// Boxes of about a metre, two cubic metres for each; the first few move.
-struct Stage {
+/// A cube of boxes about 1 m in size, one per 2 m³. The first `movers` boxes move; an empty box is absent.
+struct BoxWorld {
     std::vector<Aabb> boxes;
     std::vector<MotionState> motion_states;
-    std::vector<Vec3> velocities;  // of those that move
+    std::vector<Vec3> velocities;  // of the movers
     float side = 0;
     Random random{7};
 
-    Aabb any_box() {
+    Aabb random_box() {
         const Vec3 lo{random.between(0, side), random.between(0, side), random.between(0, side)};
         return {lo, lo + Vec3{random.between(0.6f, 1.2f), random.between(0.6f, 1.2f), random.between(0.6f, 1.2f)}};
     }
@@ -31,141 +31,143 @@ struct Stage {
 
 struct Event {
     std::string_view name, about;
-    MotionState rest;  // of all but those that move
-    void (*happen)(Stage& stage, std::uint64_t frame, std::uint64_t frames);
+    MotionState rest;  // of the boxes that do not move
+    void (*apply)(BoxWorld& world, std::uint64_t frame, std::uint64_t frames);
 };
 
 constexpr std::size_t movers = 2000;
 
-void nothing(Stage&, std::uint64_t, std::uint64_t) {}
+void no_event(BoxWorld&, std::uint64_t, std::uint64_t) {}
 
-void wall_vanishes(Stage& stage, std::uint64_t frame, std::uint64_t frames) {
+void remove_wall(BoxWorld& world, std::uint64_t frame, std::uint64_t frames) {
     if (frame != frames / 2) return;
-    const float low = 0.495f * stage.side, high = 0.505f * stage.side;
-    for (std::size_t i = movers; i < stage.boxes.size(); ++i)
-        if (stage.boxes[i].lo.x >= low && stage.boxes[i].lo.x < high) stage.boxes[i] = {};
+    const float low = 0.495f * world.side, high = 0.505f * world.side;
+    for (std::size_t i = movers; i < world.boxes.size(); ++i)
+        if (world.boxes[i].lo.x >= low && world.boxes[i].lo.x < high) world.boxes[i] = {};
 }
 
-void one_comes(Stage& stage, std::uint64_t, std::uint64_t) {
-    for (std::size_t i = movers; i < stage.boxes.size(); ++i) {
-        if (!(stage.boxes[i] == Aabb{})) continue;
-        stage.boxes[i] = stage.any_box();
+void add_box(BoxWorld& world, std::uint64_t, std::uint64_t) {
+    for (std::size_t i = movers; i < world.boxes.size(); ++i) {
+        if (!(world.boxes[i] == Aabb{})) continue;
+        world.boxes[i] = world.random_box();
         return;
     }
 }
 
-void rain(Stage& stage, std::uint64_t, std::uint64_t) {
-    constexpr std::size_t many = 1000;
-    std::size_t come = 0;
-    for (std::size_t i = movers; i < stage.boxes.size() && come < many; ++i)
-        if (stage.boxes[i] == Aabb{}) {
-            stage.boxes[i] = stage.any_box();
-            ++come;
+void replace_boxes(BoxWorld& world, std::uint64_t, std::uint64_t) {
+    constexpr std::size_t count = 1000;
+    std::size_t added = 0;
+    for (std::size_t i = movers; i < world.boxes.size() && added < count; ++i)
+        if (world.boxes[i] == Aabb{}) {
+            world.boxes[i] = world.random_box();
+            ++added;
         }
-    for (std::size_t gone = 0; gone < many;) {
-        Aabb& box = stage.boxes[movers + stage.random.below(stage.boxes.size() - movers)];
-        gone += box == Aabb{} ? 0 : 1;
+    for (std::size_t removed = 0; removed < count;) {
+        Aabb& box = world.boxes[movers + world.random.below(world.boxes.size() - movers)];
+        removed += box == Aabb{} ? 0 : 1;
         box = {};
     }
 }
 
-void all_wake(Stage& stage, std::uint64_t frame, std::uint64_t frames) {
+void wake_all(BoxWorld& world, std::uint64_t frame, std::uint64_t frames) {
     if (frame < frames / 2) return;
-    for (std::size_t i = movers; i < stage.boxes.size(); ++i) {
-        stage.boxes[i].lo.y += 0.01f;
-        stage.boxes[i].hi.y += 0.01f;
+    for (std::size_t i = movers; i < world.boxes.size(); ++i) {
+        world.boxes[i].lo.y += 0.01f;
+        world.boxes[i].hi.y += 0.01f;
     }
 }
 
-void some_wake(Stage& stage, std::uint64_t frame, std::uint64_t) {
-    constexpr std::size_t many = 500;
-    for (std::size_t i = movers; i < movers + many * frame && i < stage.boxes.size(); ++i) {
-        stage.boxes[i].lo.y += 0.01f;
-        stage.boxes[i].hi.y += 0.01f;
+void wake_some(BoxWorld& world, std::uint64_t frame, std::uint64_t) {
+    constexpr std::size_t count = 500;
+    for (std::size_t i = movers; i < movers + count * frame && i < world.boxes.size(); ++i) {
+        world.boxes[i].lo.y += 0.01f;
+        world.boxes[i].hi.y += 0.01f;
     }
 }
 
 constexpr std::array events{
-    Event{"nothing", "2,000 boxes move among those that stand", MotionState::Static, nothing},
-    Event{"wall", "a wall, one box in a hundred, vanishes in one frame", MotionState::Static, wall_vanishes},
-    Event{"comes", "one box more in each frame", MotionState::Static, one_comes},
-    Event{"rain", "1,000 boxes come and 1,000 go in each frame", MotionState::Static, rain},
-    Event{"wake", "all sleep, then all wake in one frame and move from then on", MotionState::Asleep, all_wake},
-    Event{"rouse", "500 of those that sleep wake in each frame", MotionState::Asleep, some_wake}};
+    Event{"nothing", "2,000 boxes move among static ones", MotionState::Static, no_event},
+    Event{"wall", "a wall, one box in a hundred, disappears in one frame", MotionState::Static, remove_wall},
+    Event{"comes", "one box is added in each frame", MotionState::Static, add_box},
+    Event{"rain", "1,000 boxes are added and 1,000 removed in each frame", MotionState::Static, replace_boxes},
+    Event{"wake", "all sleep, then all wake in one frame and move from then on", MotionState::Asleep, wake_all},
+    Event{"rouse", "500 sleeping boxes wake in each frame", MotionState::Asleep, wake_some}};
 
-Stage begin(const Event& event, std::size_t count) {
-    Stage stage;
-    stage.side = static_cast<float>(std::cbrt(2.0 * static_cast<double>(count)));
+BoxWorld make_world(const Event& event, std::size_t count) {
+    BoxWorld world;
+    world.side = static_cast<float>(std::cbrt(2.0 * static_cast<double>(count)));
     for (std::size_t i = 0; i < count; ++i) {
-        stage.boxes.push_back(stage.any_box());
-        stage.motion_states.push_back(i < movers ? MotionState::Awake : event.rest);
+        world.boxes.push_back(world.random_box());
+        world.motion_states.push_back(i < movers ? MotionState::Awake : event.rest);
     }
     for (std::size_t i = 0; i < movers; ++i)
-        stage.velocities.push_back(
-            {stage.random.between(-5, 5), stage.random.between(-5, 5), stage.random.between(-5, 5)});
-    // Room for those that come.
-    const std::size_t spare = event.happen == rain ? 1000 : event.happen == one_comes ? 1000 : 0;
+        world.velocities.push_back(
+            {world.random.between(-5, 5), world.random.between(-5, 5), world.random.between(-5, 5)});
+    // Absent boxes, which the event adds.
+    const std::size_t spare = event.apply == replace_boxes ? 1000 : event.apply == add_box ? 1000 : 0;
     for (std::size_t i = 0; i < spare; ++i) {
-        stage.boxes.push_back({});
-        stage.motion_states.push_back(event.rest);
+        world.boxes.push_back({});
+        world.motion_states.push_back(event.rest);
     }
-    return stage;
+    return world;
 }
 
-void move_about(Stage& stage) {
+void move_boxes(BoxWorld& world) {
     for (std::size_t i = 0; i < movers; ++i) {
-        const Vec3 way = stage.velocities[i] * (1.0f / 60);
-        stage.boxes[i] = {stage.boxes[i].lo + way, stage.boxes[i].hi + way};
+        const Vec3 motion = world.velocities[i] * (1.0f / 60);
+        world.boxes[i] = {world.boxes[i].lo + motion, world.boxes[i].hi + motion};
         for (int axis = 0; axis < 3; ++axis)
-            if (stage.boxes[i].lo[axis] < 0 || stage.boxes[i].lo[axis] > stage.side)
-                stage.velocities[i][axis] = -stage.velocities[i][axis];
+            if (world.boxes[i].lo[axis] < 0 || world.boxes[i].lo[axis] > world.side)
+                world.velocities[i][axis] = -world.velocities[i][axis];
     }
 }
 
-broad::PairSetFingerprint judged(const Stage& stage) {
+/// Returns the fingerprint of the pairs that a plain sweep finds.
+broad::PairSetFingerprint reference_pairs(const BoxWorld& world) {
     std::vector<broad::Move> moves;
-    for (std::size_t i = 0; i < stage.boxes.size(); ++i)
-        if (!(stage.boxes[i] == Aabb{})) moves.push_back({static_cast<broad::Proxy>(i), stage.boxes[i]});
+    for (std::size_t i = 0; i < world.boxes.size(); ++i)
+        if (!(world.boxes[i] == Aabb{})) moves.push_back({static_cast<broad::Proxy>(i), world.boxes[i]});
     std::vector<broad::Pair> pairs;
     broad::find_pairs_by_sweep(moves, pairs, [&](broad::Proxy p, broad::Proxy q) {
-        return stage.motion_states[p] != MotionState::Static || stage.motion_states[q] != MotionState::Static;
+        return world.motion_states[p] != MotionState::Static || world.motion_states[q] != MotionState::Static;
     });
-    return broad::print_of(pairs);
+    return broad::fingerprint_of(pairs);
 }
 
-/// False when stopped.
+/// Measures one structure on one event. Returns false when stopped.
 bool measure(const SuddenOptions& options, const Event& event, SuddenRow& row, const SuddenProgress& progress) {
-    Stage stage = begin(event, options.boxes);
+    BoxWorld world = make_world(event, options.boxes);
     const auto tasks = make_serial_runner();
     pairs::PairFinder finder = row.structure == "auto" ? pairs::PairFinder::automatic()
                                                        : pairs::PairFinder(*broad::AnyStructure::named(row.structure));
-    const double build_begin = ms_worked();
-    finder.build(*tasks, stage.boxes, stage.motion_states);
-    row.build_ms = ms_worked() - build_begin;
+    const double build_begin = cpu_ms();
+    finder.build(*tasks, world.boxes, world.motion_states);
+    row.build_ms = cpu_ms() - build_begin;
     std::vector<broad::Pair> pairs;
     std::vector<double> times;
-    std::vector<std::pair<Stage, broad::PairSetFingerprint>> looked_at;  // judged at the end, to leave the caches alone
+    std::vector<std::pair<BoxWorld, broad::PairSetFingerprint>> checks;  // after the timing, to keep the caches
     const std::string what = fmt::format("{} {}", event.name, row.structure);
     for (std::uint64_t frame = 0; frame < options.frames + 5; ++frame) {
         if (!progress(frame, options.frames + 5, what)) return false;
-        move_about(stage);
-        const bool warm = frame >= 5;  // memory is at hand, and the sets are as they stay
-        if (warm) event.happen(stage, frame - 5, options.frames);
+        move_boxes(world);
+        const bool warm = frame >= 5;  // after 5 frames memory is allocated and the sets are settled
+        if (warm) event.apply(world, frame - 5, options.frames);
         pairs.clear();
-        const double begin_of_frame = ms_worked();
-        finder.update(*tasks, stage.boxes);
+        const double frame_begin = cpu_ms();
+        finder.update(*tasks, world.boxes);
         finder.find_pairs(*tasks, pairs);
-        const double ms = ms_worked() - begin_of_frame;
+        const double ms = cpu_ms() - frame_begin;
         if (!warm) continue;
+        const std::uint64_t measured = frame - 5;
         if (times.empty() || ms > row.ms.worst) {
-            row.worst_frame = frame - 5;
+            row.worst_frame = measured;
             row.ms.worst = ms;
         }
         times.push_back(ms);
-        const std::uint64_t at = frame - 5;
-        if (at == options.frames / 2 || at + 1 == options.frames) looked_at.emplace_back(stage, broad::print_of(pairs));
+        if (measured == options.frames / 2 || measured + 1 == options.frames)
+            checks.emplace_back(world, broad::fingerprint_of(pairs));
     }
-    for (const auto& [then, print] : looked_at) row.right = row.right && print == judged(then);
+    for (const auto& [then, fingerprint] : checks) row.correct = row.correct && fingerprint == reference_pairs(then);
     row.ms = timing_of(times);
     row.frames = times.size();
     row.pairs = pairs.size();
@@ -177,7 +179,7 @@ bool measure(const SuddenOptions& options, const Event& event, SuddenRow& row, c
 Result<std::vector<SuddenRow>> measure_sudden(const SuddenOptions& options, const SuddenProgress& progress) {
     if (options.boxes < 2 * movers)
         return Error{Status::BadArgument, "--count",
-                     fmt::format("found {}, need at least {}", options.boxes, 2 * movers), ""};
+                     fmt::format("found {}; expected at least {}", options.boxes, 2 * movers), ""};
     std::vector<std::string> names;
     for (std::size_t begin = 0; begin <= options.structures.size();) {
         const std::size_t end = std::min(options.structures.find(',', begin), options.structures.size());

@@ -1,4 +1,4 @@
-/// Tables of measured figures, as CSV files that only grow, with where and when the figures come from.
+/// Append-only CSV files of measured figures, with the origin of each row.
 #include "bench/table_file.hpp"
 
 #include <fmt/format.h>
@@ -39,16 +39,16 @@ std::string line_of(const std::vector<std::string>& fields) {
     return line;
 }
 
-/// What a command prints, without the line's end; "" when it fails.
-std::string answer_of(const char* command) {
+/// Returns the output of a shell command without trailing newlines; "" when the command fails.
+std::string output_of(const char* command) {
     FILE* const pipe = ::popen(command, "r");
     if (pipe == nullptr) return {};
     std::array<char, 256> buffer{};
-    std::string answer;
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) answer += buffer.data();
+    std::string output;
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
     if (::pclose(pipe) != 0) return {};
-    while (!answer.empty() && answer.back() == '\n') answer.pop_back();
-    return answer;
+    while (!output.empty() && output.back() == '\n') output.pop_back();
+    return output;
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ Origin origin_of_figures() {
     std::tm utc{};
     ::gmtime_r(&now, &utc);
     origin.date = fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
-    origin.commit = answer_of("git describe --always --dirty --abbrev=10 --exclude '*' 2>/dev/null");
+    origin.commit = output_of("git describe --always --dirty --abbrev=10 --exclude '*' 2>/dev/null");
     if (origin.commit.empty()) origin.commit = "unknown";
     std::ifstream processors("/proc/cpuinfo");
     for (std::string line; std::getline(processors, line) && origin.machine.empty();) {
@@ -76,8 +76,8 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
                              const std::vector<std::vector<std::string>>& rows) {
     const std::string head = line_of(columns);
     std::string text;
-    struct stat there {};
-    if (::stat(file.c_str(), &there) == 0) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) == 0) {
         const Result<std::vector<std::byte>> bytes = read_file(file, max_bytes);
         if (!bytes) return bytes.error();
         text.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -85,8 +85,8 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
     if (text.empty()) {
         text = head;
     } else if (text.rfind(head, 0) != 0) {
-        return Error{Status::Format, file + ":1", "found other columns, need " + head.substr(0, head.size() - 1),
-                     "name a new file"};
+        return Error{Status::Format, file + ":1", "found other columns; expected " + head.substr(0, head.size() - 1),
+                     "choose a new file"};
     }
     if (text.back() != '\n') text += '\n';
     for (const std::vector<std::string>& row : rows) text += line_of(row);

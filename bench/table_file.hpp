@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of measured figures, as CSV files that only grow, with where and when the figures come from.
+/// Append-only CSV files of measured figures, with the origin of each row.
 #include <string>
 #include <vector>
 
@@ -7,17 +7,17 @@
 
 namespace fase::bench {
 
-/// Where figures come from.
+/// The origin of figures.
 struct Origin {
     std::string date;  ///< YYYY-MM-DD, UTC
-    std::string
-        commit;  ///< of the repository that the program is started in, with "-dirty" when it was changed; or "unknown"
-    std::string machine;  ///< the processor's name and how many the system shows
+    /// Of the repository in the working directory, with "-dirty" when it has changes; or "unknown".
+    std::string commit;
+    std::string machine;  ///< name of the processor and number of logical cores
 };
 [[nodiscard]] Origin origin_of_figures();
 
-/// Adds rows to a CSV file (RFC 4180, line ends of one byte); a new one gets `columns` as its first line. Format when
-/// the file has other columns, Io when it cannot be read or written; then it is as it was.
+/// Appends rows to a CSV file (RFC 4180 with "\n" line ends); a new file gets `columns` as its first line. On error the
+/// file is unchanged. Errors: Format: the file has other columns; Io: it cannot be read or written.
 Result<void> append_to_table(const std::string& file, const std::vector<std::string>& columns,
                              const std::vector<std::vector<std::string>>& rows);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Many measured times as the few numbers that tables show.
+/// Statistics of measured times for tables.
 #include <algorithm>
 #include <cstddef>
 #include <ctime>
@@ -8,16 +8,15 @@
 
 namespace fase::bench {
 
-/// Milliseconds that the processor has worked for this program: for what one thread does, so that other programs do not
-/// count.
-[[nodiscard]] inline double ms_worked() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
+/// Processor time of this process so far, in milliseconds. For single-threaded code: excludes other programs.
+[[nodiscard]] inline double cpu_ms() { return static_cast<double>(std::clock()) * (1000.0 / CLOCKS_PER_SEC); }
 
-/// Of many times; milliseconds.
+/// Statistics of a set of times, in milliseconds.
 struct Timing {
     double mean = 0, median = 0, worst = 0;
 };
 
-/// The middle one, or the mean of the two in the middle; 0 of none.
+/// Returns the middle value, or the mean of the two middle ones; 0 for an empty list.
 [[nodiscard]] inline double median_of(std::span<const double> values) {
     if (values.empty()) return 0;
     std::vector<double> sorted(values.begin(), values.end());
@@ -27,7 +26,7 @@ struct Timing {
     return (*middle + *std::max_element(sorted.begin(), middle)) / 2;
 }
 
-/// All zero of none.
+/// Returns mean, median and maximum; all 0 for an empty list.
 [[nodiscard]] inline Timing timing_of(std::span<const double> values) {
     Timing timing;
     if (values.empty()) return timing;

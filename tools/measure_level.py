@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Compiles all maps of WAD files with `fase level`, zdbsp and glbsp in turns and writes bench/results/level.csv.
+"""Compiles all maps of WAD files with `fase level`, zdbsp and glbsp, alternating; writes bench/results/level.csv.
 
-Usage: measure_level.py [--program build/release/fase] [--rounds 5] [--repository .] [WAD …]. Without WADs those of Debian's
-package freedoom. Peers are those found on PATH (tools/install_peers installs zdbsp, glbsp and freedoom). Whatever compiled a map, its figures are read from the
-lumps that it wrote, by `fase level --lumps nodes --check`. The time of a single map is less that of starting the program.
-Then tools/make_tables.py.
+Usage: measure_level.py [--program build/release/fase] [--rounds 5] [--repository .] [WAD …]. Without a WAD, uses those of
+Debian's package freedoom. Compares with the compilers found on PATH (tools/install_peers installs zdbsp, glbsp and freedoom). For each compiler,
+`fase level --lumps nodes --check` reads the figures from the lumps that it wrote. The time of a single map excludes starting the program.
+Run tools/make_tables.py afterwards.
 """
 import argparse
 import json
@@ -26,15 +26,15 @@ MAP_LUMPS = {"THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SEGS", "SSECTORS", "
 
 
 def contenders(program):
-    """(compiler, settings, command line from input and output, or None when the program is not there)."""
+    """Returns (compiler, settings, function from input and output to command line) for each compiler that is installed."""
     def fase(*options):
         return lambda wad, out: [program, "level", wad, "--all", "-o", out, "--threads", "1", *options]
 
-    found = [("fase", "as it comes", fase()),
+    found = [("fase", "default", fase()),
              ("fase", "--effort quick", fase("--effort", "quick")),
              ("fase", "--weight 0 --effort thorough", fase("--weight", "0", "--effort", "thorough"))]
     if zdbsp := shutil.which("zdbsp"):
-        found += [("zdbsp", "as it comes", lambda wad, out: [zdbsp, "-t", "-o", out, wad]),
+        found += [("zdbsp", "default", lambda wad, out: [zdbsp, "-t", "-o", out, wad]),
                   ("zdbsp", "-g", lambda wad, out: [zdbsp, "-t", "-g", "-o", out, wad])]
     if glbsp := shutil.which("glbsp"):
         found += [("glbsp", "-n", lambda wad, out: [glbsp, "-q", "-xp", "-n", wad, "-o", out])]
@@ -42,7 +42,7 @@ def contenders(program):
 
 
 def run(command):
-    """Processor and wall seconds of a program that must succeed."""
+    """Returns processor and elapsed seconds of a program. Exits when it fails."""
     begin = time.monotonic()
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         _, status, usage = os.wait4(process.pid, 0)
@@ -52,8 +52,8 @@ def run(command):
     return usage.ru_utime + usage.ru_stime, time.monotonic() - begin
 
 
-def start_of(command, times=9):
-    """Processor seconds that a program takes to start and to say that it has nothing to do."""
+def startup_seconds(command, times=9):
+    """Returns the processor seconds of starting a program (its --version)."""
     program = command(Path("/dev/null"), Path("/dev/null"))[0]
     taken = []
     for _ in range(times):
@@ -65,14 +65,14 @@ def start_of(command, times=9):
 
 
 def figures_of(program, wad):
-    """By map, what the lumps of a WAD say."""
-    told = subprocess.run([program, "level", wad, "--all", "--lumps", "nodes", "--check", "--json"], check=False,
+    """Returns the figures of a compiled WAD by map, read from its lumps."""
+    report = subprocess.run([program, "level", wad, "--all", "--lumps", "nodes", "--check", "--json"], check=False,
                           stdout=subprocess.PIPE, text=True).stdout
-    return {row["map"]: row for row in json.loads(told)}
+    return {row["map"]: row for row in json.loads(report)}
 
 
 def single_maps(wad, folder):
-    """Writes each map into a WAD of its own; (map, file) of each."""
+    """Writes each map to its own WAD; yields (map, file)."""
     data = wad.read_bytes()
     count, directory = struct.unpack_from("<ii", data, 4)
     lumps = []
@@ -100,9 +100,9 @@ def median(values):
 
 
 def measure(program, wad, rounds, folder):
-    """One dictionary a contender and map, and one a contender for the whole file."""
+    """Yields one dictionary per contender and map, and one per contender for the full file."""
     found = contenders(program)
-    starts = [start_of(command) for _, _, command in found]
+    starts = [startup_seconds(command) for _, _, command in found]
     out = Path(folder) / "out.wad"
     jobs = [("all", wad), *single_maps(wad, folder)]
     for name, file in jobs:
@@ -135,7 +135,7 @@ def main():
     options = parser.parse_args()
     wads = options.wads or [wad for wad in FREEDOOM if wad.is_file()]
     if not wads:
-        raise SystemExit("measure_level.py: error: found no WAD, need one, or Debian's package freedoom")
+        raise SystemExit("measure_level.py: error: found no WAD; expected a path, or Debian's package freedoom")
     about = origin_of(options.repository)
     with tempfile.TemporaryDirectory() as folder:
         rows = [about | row for wad in wads for row in measure(str(options.program), wad, options.rounds, folder)]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Times every structure on traces made by rule and writes bench/results/structures.csv.
+"""Measures every structure on generated traces; writes bench/results/structures.csv.
 
-Usage: measure_structures.py [--program build/release/fase] [--counts 100 1000 10000] [--frames 40] [REPOSITORY]. Each trace is made by
-`fase generate`, and its pairs are held against the judge before its row is written. Then tools/make_tables.py.
+Usage: measure_structures.py [--program build/release/fase] [--counts 100 1000 10000] [--frames 40] [REPOSITORY]. `fase generate`
+makes each trace; its pairs are checked against the reference. Run tools/make_tables.py afterwards.
 """
 import argparse
 import json
@@ -19,19 +19,19 @@ FIELDS = ["machine", "date", "commit", "trace", "boxes", "frames", "structure", 
 
 
 def rows_of(program, kind, count, frames, rounds, folder):
-    """One dictionary a structure, measured on a fresh trace of that kind."""
+    """Yields one dictionary per structure, measured on a new trace of that kind."""
     trace = Path(folder) / f"{kind}.aabt"
     subprocess.run([program, "generate", kind, "--count", str(count), "--frames", str(frames), "-o", trace], check=True,
                    stdout=subprocess.DEVNULL)
-    told = {}
-    for structure in ("auto", "all") * rounds:  # in turns; the quickest run counts
+    best = {}
+    for structure in ("auto", "all") * rounds:  # alternating; the fastest run counts
         out = subprocess.run([program, "pairs", trace, "--structure", structure, "--check", "--json"], check=True,
                              stdout=subprocess.PIPE, text=True).stdout
         for row in json.loads(out):
-            known = told.setdefault(row["structure"], row)
+            known = best.setdefault(row["structure"], row)
             if row["skipped"] is None and row["ms"]["median"] < known["ms"]["median"]:
-                told[row["structure"]] = row
-    for row in told.values():
+                best[row["structure"]] = row
+    for row in best.values():
         if row["skipped"] is None:
             yield {"trace": kind, "boxes": count, "frames": row["frames"], "structure": row["structure"],
                    "build_ms": row["build_ms"], "mean_ms": row["ms"]["mean"], "median_ms": row["ms"]["median"],

@@ -1,4 +1,4 @@
-/// Boost's R-tree as `fase bench pairs` measures it.
+/// Boost's R-tree in `fase bench pairs`.
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
@@ -17,7 +17,8 @@ using Tree = bg::index::rtree<Entry, bg::index::rstar<16>>;
 
 Box to_boost(const Aabb& box) { return {Point(box.lo.x, box.lo.y, box.lo.z), Point(box.hi.x, box.hi.y, box.hi.z)}; }
 
-/// Packed anew each frame, which is far quicker than to take out and put in what moves; then each box asks.
+/// Packs the tree again in each frame, which is far faster than removing and inserting the moved boxes; then queries
+/// the tree once per box.
 class BoostPairs final : public PairEngine {
 public:
     explicit BoostPairs(const PairScene& scene) : scene_(scene) { update(scene.boxes); }
@@ -27,12 +28,12 @@ public:
         tree_ = Tree(entries_);
     }
     void find_pairs(std::vector<Pair>& out) override {
-        for (const Entry& mine : entries_) {
-            const broad::Proxy p = mine.second;
-            const auto take = boost::make_function_output_iterator([&](const Entry& other) {
+        for (const Entry& entry : entries_) {
+            const broad::Proxy p = entry.second;
+            const auto append = boost::make_function_output_iterator([&](const Entry& other) {
                 if (p < other.second && !scene_.both_static(p, other.second)) out.push_back({p, other.second});
             });
-            tree_.query(bg::index::intersects(mine.first), take);
+            tree_.query(bg::index::intersects(entry.first), append);
         }
     }
     [[nodiscard]] std::string settings() const override {

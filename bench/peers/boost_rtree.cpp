@@ -1,4 +1,4 @@
-/// Boost.Geometry's R-tree: boxes that overlap a box.
+/// Boost.Geometry's R-tree in `fase bench queries`: boxes that overlap a box.
 #include "bench/peers/boost_rtree.hpp"
 
 #include <boost/function_output_iterator.hpp>
@@ -27,14 +27,14 @@ public:
         tree_ = Tree(entries_);
     }
     void rays(std::span<const Ray>, std::vector<query::Hit>&) const override {}
-    void boxes(std::span<const Aabb> boxes, Lists& out) const override {
+    void boxes(std::span<const Aabb> boxes, AnswerLists& out) const override {
         for (const Aabb& box : boxes) {
-            const auto take = [&](const Entry& entry) { out.proxies.push_back(entry.second); };
-            tree_.query(bg::index::intersects(to_boost(box)), boost::make_function_output_iterator(take));
+            const auto append = [&](const Entry& entry) { out.proxies.push_back(entry.second); };
+            tree_.query(bg::index::intersects(to_boost(box)), boost::make_function_output_iterator(append));
             out.ends.push_back(out.proxies.size());
         }
     }
-    void frusta(std::span<const Frustum>, Lists&) const override {}
+    void frusta(std::span<const Frustum>, AnswerLists&) const override {}
     [[nodiscard]] std::string settings() const override {
         return "Boost " BOOST_LIB_VERSION " R-tree, quadratic, 16 a node, packed";
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Boost.Geometry's R-tree: boxes that overlap a box.
+/// Boost.Geometry's R-tree in `fase bench queries`: boxes that overlap a box.
 #include <memory>
 #include <string_view>
 
@@ -7,7 +7,7 @@
 
 namespace fase::bench {
 
-/// Quadratic split, 16 entries a node, packed when built; packed anew when boxes move.
+/// Quadratic split, 16 entries per node. Packed at build and again when boxes move.
 std::unique_ptr<QueryContender> make_boost_rtree(std::string_view name);
 
 }  // namespace fase::bench

@@ -1,4 +1,4 @@
-/// Bullet as an engine that `fase bench` measures.
+/// Bullet in `fase bench step`.
 #include "bench/peers/bullet.hpp"
 
 #include <LinearMath/btConvexHullComputer.h>
@@ -20,16 +20,18 @@ btTransform to_bullet(const LocalPose& pose) {
                        to_bullet(pose.position));
 }
 
-/// Bullet grows a hull by a margin of 4 cm, which its collision needs to be quick. So the hull is shrunk by as much
-/// before, as Bullet itself does with boxes: the surface is then where the scene has it, with rounded edges.
+/// Creates a hull shape. Bullet adds a margin of 4 cm to a hull, which its collision needs for speed. The hull is
+/// shrunk by the same distance first, as Bullet does with boxes: the surface then matches the scene, with rounded
+/// edges.
 std::unique_ptr<btCollisionShape> make_hull(const ConvexHull& hull) {
     std::vector<btVector3> points;
     for (const Vec3 vertex : hull.vertices) points.push_back(to_bullet(vertex));
-    constexpr btScalar most_of_inner_radius = 0.5f;
+    constexpr btScalar max_share_of_inner_radius = 0.5f;
     auto shape = std::make_unique<btConvexHullShape>();
     btConvexHullComputer computer;
-    const btScalar margin = computer.compute(&points[0][0], static_cast<int>(sizeof(btVector3)),
-                                             static_cast<int>(points.size()), shape->getMargin(), most_of_inner_radius);
+    const btScalar margin =
+        computer.compute(&points[0][0], static_cast<int>(sizeof(btVector3)), static_cast<int>(points.size()),
+                         shape->getMargin(), max_share_of_inner_radius);
     for (int i = 0; i < computer.vertices.size(); ++i) shape->addPoint(computer.vertices[i], false);
     shape->recalcLocalAabb();
     shape->setMargin(margin);
@@ -58,14 +60,14 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
     return std::visit(Make{}, shape);
 }
 
-/// Tells Bullet where a kinematic body is to be: it goes on at constant velocities.
+/// The motion state of a kinematic body that moves at constant velocities.
 class MovedBody final : public btMotionState {
 public:
     MovedBody(const btTransform& start, btVector3 linear, btVector3 angular, btScalar dt)
         : now_(start), linear_(linear), angular_(angular), dt_(dt) {}
     void getWorldTransform(btTransform& out) const override { out = now_; }
     void setWorldTransform(const btTransform&) override {}
-    void move_on() {
+    void advance() {
         btTransform next;
         btTransformUtil::integrateTransform(now_, linear_, angular_, dt_, next);
         now_ = next;
@@ -104,7 +106,7 @@ public:
     }
 
     Result<void> step() override {
-        for (const auto& moved : moved_) moved->move_on();
+        for (const auto& moved : moved_) moved->advance();
         world_.stepSimulation(dt_, 0);  // exactly one step of dt
         return {};
     }
@@ -118,8 +120,8 @@ public:
     void read_centres(std::vector<Vec3d>& out) const override {
         for (const auto& body : bodies_) {
             if (body->isStaticOrKinematicObject()) continue;
-            const btVector3& at = body->getCenterOfMassPosition();
-            out.push_back({double(at.x()), double(at.y()), double(at.z())});
+            const btVector3& centre = body->getCenterOfMassPosition();
+            out.push_back({double(centre.x()), double(centre.y()), double(centre.z())});
         }
     }
     [[nodiscard]] std::string settings() const override {
@@ -131,14 +133,16 @@ private:
     Result<void> add(const scene::Scene& scene, const scene::Body& body) {
         const AxisLocks free;
         if (!(body.def.locks == free) || body.def.gravity_scale != 1) {
-            return Error{Status::Unsupported, {}, "found axis locks or a gravity scale, need a body without", {}};
+            return Error{Status::Unsupported, {}, "found axis locks or a gravity scale; expected a body without", {}};
         }
-        if (body.colliders.empty()) return Error{Status::Unsupported, {}, "found no collider, need one", {}};
+        if (body.colliders.empty())
+            return Error{Status::Unsupported, {}, "found no collider; expected one or more", {}};
         for (const scene::Collider& collider : body.colliders) {
-            if (collider.def.sensor) return Error{Status::Unsupported, {}, "found a sensor, need solid colliders", {}};
+            if (collider.def.sensor)
+                return Error{Status::Unsupported, {}, "found a sensor; expected solid colliders", {}};
         }
         MassProperties mass;
-        LocalPose centre;  // of mass, along the axes of inertia, in the body
+        LocalPose centre;  // centre of mass and principal axes, in the body's frame
         btVector3 moments(0, 0, 0);
         if (body.def.kind == BodyKind::Dynamic) {
             mass = mass_of(scene, body);
@@ -146,8 +150,8 @@ private:
             centre = {mass.centre, inertia.axes};
             moments = to_bullet(inertia.moments);
         }
-        const LocalPose turn{{}, body.def.rotation};
-        btTransform start = to_bullet(turn * centre);
+        const LocalPose rotation{{}, body.def.rotation};
+        btTransform start = to_bullet(rotation * centre);
         start.setOrigin(to_bullet(body.def.position) + start.getOrigin());
 
         btMotionState* motion = nullptr;
@@ -182,12 +186,12 @@ private:
         std::vector<MassProperties> parts;
         for (const scene::Collider& collider : body.colliders) {
             parts.push_back(
-                moved(mass_properties(scene.shapes[collider.shape], collider.def.density), collider.def.pose));
+                transformed(mass_properties(scene.shapes[collider.shape], collider.def.density), collider.def.pose));
         }
         return combined(parts);
     }
 
-    /// @param body_in_centre the body's frame, seen from its centre of mass
+    /// Returns the shape of a body. `body_in_centre`: the body's frame relative to its centre of mass.
     btCollisionShape* shape_of(const scene::Body& body, const LocalPose& body_in_centre) {
         const LocalPose first = body_in_centre * body.colliders.front().def.pose;
         if (body.colliders.size() == 1 && first == LocalPose{}) return shapes_[body.colliders.front().shape].get();

@@ -1,4 +1,4 @@
-/// Bullet's dynamic tree of boxes (btDbvt).
+/// Bullet's dynamic tree of boxes (btDbvt) in `fase bench queries`.
 #include "bench/peers/bullet_dbvt.hpp"
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -17,9 +17,9 @@ btDbvtVolume to_bullet(const Aabb& box) { return btDbvtVolume::FromMM(to_bullet(
 Proxy proxy_of(const btDbvtNode* leaf) { return static_cast<Proxy>(reinterpret_cast<std::uintptr_t>(leaf->data)); }
 
 /// Calls `visit(proxy)` for each leaf.
-template <class Visit> class Each : public btDbvt::ICollide {
+template <class Visit> class LeafVisitor : public btDbvt::ICollide {
 public:
-    explicit Each(Visit visit) : visit_(std::move(visit)) {}
+    explicit LeafVisitor(Visit visit) : visit_(std::move(visit)) {}
     void Process(const btDbvtNode* leaf) override { visit_(proxy_of(leaf)); }
 
 private:
@@ -46,18 +46,19 @@ public:
             btDbvtVolume volume = to_bullet(m.box);
             tree_.update(leaves_[m.proxy], volume);
         }
-        tree_.optimizeIncremental(static_cast<int>(boxes.size() / 100));  // as its broad phase does in every step
+        tree_.optimizeIncremental(static_cast<int>(boxes.size() / 100));  // as Bullet's broad phase does in every step
     }
     void rays(std::span<const Ray> rays, std::vector<query::Hit>& out) const override {
         btAlignedObjectArray<const btDbvtNode*> stack;
         for (const Ray& ray : rays) {
             const broad::RayMeasure measure(ray);
             query::Hit best;
-            Each each([&](Proxy p) {
-                float at = measure.at(boxes_[p].box, best.at);
-                if (!(at < broad::beyond)) return;
-                if (!scene_->mesh.indices.empty()) at = std::max(at, distance_to_triangle(scene_->mesh, p, ray));
-                if (at < broad::beyond) best = std::min(best, query::Hit{at, p});
+            LeafVisitor visitor([&](Proxy p) {
+                float distance = measure.distance(boxes_[p].box, best.distance);
+                if (!(distance < broad::infinite_distance)) return;
+                if (!scene_->mesh.indices.empty())
+                    distance = std::max(distance, distance_to_triangle(scene_->mesh, p, ray));
+                if (distance < broad::infinite_distance) best = std::min(best, query::Hit{distance, p});
             });
             const btVector3 from = to_bullet(ray.origin), direction = to_bullet(ray.direction);
             btVector3 inverse;
@@ -68,18 +69,19 @@ public:
             }
             const btScalar reach = ray.length < BT_LARGE_FLOAT ? ray.length : btScalar(BT_LARGE_FLOAT);
             const btVector3 none(0, 0, 0);
-            tree_.rayTestInternal(tree_.m_root, from, from + direction, inverse, signs, reach, none, none, stack, each);
+            tree_.rayTestInternal(tree_.m_root, from, from + direction, inverse, signs, reach, none, none, stack,
+                                  visitor);
             out.push_back(best);
         }
     }
-    void boxes(std::span<const Aabb> boxes, Lists& out) const override {
+    void boxes(std::span<const Aabb> boxes, AnswerLists& out) const override {
         for (const Aabb& box : boxes) {
-            Each each([&](Proxy p) { out.proxies.push_back(p); });
-            tree_.collideTV(tree_.m_root, to_bullet(box), each);
+            LeafVisitor visitor([&](Proxy p) { out.proxies.push_back(p); });
+            tree_.collideTV(tree_.m_root, to_bullet(box), visitor);
             out.ends.push_back(out.proxies.size());
         }
     }
-    void frusta(std::span<const Frustum> frusta, Lists& out) const override {
+    void frusta(std::span<const Frustum> frusta, AnswerLists& out) const override {
         for (const Frustum& frustum : frusta) {
             const broad::FrustumRegion region(frustum);
             btVector3 normals[6];
@@ -89,10 +91,10 @@ public:
                 normals[i] = to_bullet(side.normal * -1);
                 offsets[i] = btScalar(side.offset);
             }
-            Each each([&](Proxy p) {
+            LeafVisitor visitor([&](Proxy p) {
                 if (region.touches(boxes_[p].box)) out.proxies.push_back(p);
             });
-            btDbvt::collideKDOP(tree_.m_root, normals, offsets, 6, each);
+            btDbvt::collideKDOP(tree_.m_root, normals, offsets, 6, visitor);
             out.ends.push_back(out.proxies.size());
         }
     }

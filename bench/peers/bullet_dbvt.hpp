@@ -1,5 +1,5 @@
 #pragma once
-/// Bullet's dynamic tree of boxes (btDbvt).
+/// Bullet's dynamic tree of boxes (btDbvt) in `fase bench queries`.
 #include <memory>
 #include <string_view>
 
@@ -7,8 +7,8 @@
 
 namespace fase::bench {
 
-/// Built from the top, boxes without margin, our exact test at the leaves. Its ray search does not end at the nearest:
-/// it visits all boxes along the ray.
+/// Built top-down, boxes without margin, Fase's exact test at the leaves. Its ray search does not stop at the nearest
+/// hit: it visits all boxes along the ray.
 std::unique_ptr<QueryContender> make_bullet_dbvt(std::string_view name);
 
 }  // namespace fase::bench

@@ -1,4 +1,4 @@
-/// Bullet's broad phases as `fase bench pairs` measures them.
+/// Bullet's broad phases in `fase bench pairs`.
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
@@ -10,16 +10,17 @@ namespace {
 
 btVector3 to_bullet(Vec3 v) { return {v.x, v.y, v.z}; }
 
-/// Bullet keeps the pairs of boxes that it has made larger: what it keeps is held against the exact boxes.
+/// Bullet keeps the pairs of fat AABBs; each is tested again with the exact boxes.
 class BulletPairs final : public PairEngine {
 public:
     BulletPairs(const PairScene& scene, const std::string& name) : name_(name) {
         Aabb world;
         for (const Aabb& box : scene.boxes) world = merge(world, box);
         if (name == "bullet_axis_sweep") {
-            const Vec3 room = extent(world) * 0.25f + Vec3{1, 1, 1};
-            broadphase_ = std::make_unique<bt32BitAxisSweep3>(to_bullet(world.lo - room), to_bullet(world.hi + room),
-                                                              static_cast<unsigned>(scene.boxes.size()) + 2);
+            const Vec3 border = extent(world) * 0.25f + Vec3{1, 1, 1};
+            broadphase_ =
+                std::make_unique<bt32BitAxisSweep3>(to_bullet(world.lo - border), to_bullet(world.hi + border),
+                                                    static_cast<unsigned>(scene.boxes.size()) + 2);
         } else {
             auto tree = std::make_unique<btDbvtBroadphase>();
             tree->m_deferedcollide = name == "bullet_dbvt_deferred";
@@ -27,11 +28,12 @@ public:
         }
         boxes_.assign(scene.boxes.begin(), scene.boxes.end());
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
-            const bool fixed = scene.motion_states[i] == MotionState::Static;
-            constexpr int still = 1, moving = 2;
-            proxies_.push_back(broadphase_->createProxy(to_bullet(boxes_[i].lo), to_bullet(boxes_[i].hi), 0,
-                                                        reinterpret_cast<void*>(i), fixed ? still : moving,
-                                                        fixed ? moving : moving | still, nullptr));
+            const bool is_static = scene.motion_states[i] == MotionState::Static;
+            constexpr int static_group = 1, moving_group = 2;
+            proxies_.push_back(
+                broadphase_->createProxy(to_bullet(boxes_[i].lo), to_bullet(boxes_[i].hi), 0,
+                                         reinterpret_cast<void*>(i), is_static ? static_group : moving_group,
+                                         is_static ? moving_group : moving_group | static_group, nullptr));
         }
         broadphase_->calculateOverlappingPairs(nullptr);
     }

@@ -1,4 +1,4 @@
-/// CGAL's intersection of box sequences as `fase bench pairs` measures it.
+/// CGAL's intersection of box sequences in `fase bench pairs`.
 #include <CGAL/box_intersection_d.h>
 #include <CGAL/version.h>
 
@@ -13,7 +13,7 @@ using CgalBox = box_d::Box_with_handle_d<float, 3, const std::size_t*, box_d::ID
 class CgalPairs final : public PairEngine {
 public:
     explicit CgalPairs(const PairScene& scene) : scene_(scene) {
-        for (std::size_t i = 0; i < scene.boxes.size(); ++i) places_.push_back(i);
+        for (std::size_t i = 0; i < scene.boxes.size(); ++i) indices_.push_back(i);
         update(scene.boxes);
     }
     void update(std::span<const Aabb> boxes) override { boxes_.assign(boxes.begin(), boxes.end()); }
@@ -23,22 +23,22 @@ public:
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
             const Aabb& box = boxes_[i];
             float lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
-            (scene_.motion_states[i] == MotionState::Static ? static_ : moving_).emplace_back(lo, hi, &places_[i]);
+            (scene_.motion_states[i] == MotionState::Static ? static_ : moving_).emplace_back(lo, hi, &indices_[i]);
         }
-        const auto take = [&out](const CgalBox& a, const CgalBox& b) {
+        const auto append = [&out](const CgalBox& a, const CgalBox& b) {
             out.push_back(
                 broad::ordered_pair(static_cast<broad::Proxy>(*a.handle()), static_cast<broad::Proxy>(*b.handle())));
         };
-        // Both reorder the boxes; the second does not mind.
-        CGAL::box_self_intersection_d(moving_.begin(), moving_.end(), take);
+        // Both calls reorder the boxes; the second does not depend on the order.
+        CGAL::box_self_intersection_d(moving_.begin(), moving_.end(), append);
         if (!static_.empty())
-            CGAL::box_intersection_d(moving_.begin(), moving_.end(), static_.begin(), static_.end(), take);
+            CGAL::box_intersection_d(moving_.begin(), moving_.end(), static_.begin(), static_.end(), append);
     }
     [[nodiscard]] std::string settings() const override { return "CGAL " CGAL_VERSION_STR ", box_self_intersection_d"; }
 
 private:
     PairScene scene_;
-    std::vector<std::size_t> places_;
+    std::vector<std::size_t> indices_;
     std::vector<Aabb> boxes_;
     std::vector<CgalBox> moving_, static_;
 };

@@ -1,4 +1,4 @@
-/// Embree: rays at triangles and at boxes.
+/// Embree in `fase bench queries`: rays against triangles and boxes.
 #include "bench/peers/embree.hpp"
 
 #include <embree3/rtcore.h>
@@ -10,9 +10,9 @@ namespace {
 
 using broad::Move;
 
-/// What Embree hands to our callbacks.
+/// The context that Embree passes to the callbacks.
 struct RayContext {
-    RTCIntersectContext context;  // must stand first
+    RTCIntersectContext context;  // must be the first member
     const broad::RayMeasure* measure;
 };
 
@@ -21,15 +21,16 @@ void bounds_of_box(const RTCBoundsFunctionArguments* arguments) {
     *arguments->bounds_o = {box.lo.x, box.lo.y, box.lo.z, 0, box.hi.x, box.hi.y, box.hi.z, 0};
 }
 
-void meet_box(const RTCIntersectFunctionNArguments* arguments) {
+void intersect_box(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     const Aabb& box = (*static_cast<const std::vector<Move>*>(arguments->geometryUserPtr))[arguments->primID].box;
     auto& found = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
     const auto& context = *reinterpret_cast<const RayContext*>(arguments->context);
-    const float at = context.measure->at(box, found.ray.tfar);
-    const bool nearer = at < found.ray.tfar || (at == found.ray.tfar && arguments->primID < found.hit.primID);
-    if (!(at < broad::beyond) || !nearer) return;
-    found.ray.tfar = at;
+    const float distance = context.measure->distance(box, found.ray.tfar);
+    const bool nearer =
+        distance < found.ray.tfar || (distance == found.ray.tfar && arguments->primID < found.hit.primID);
+    if (!(distance < broad::infinite_distance) || !nearer) return;
+    found.ray.tfar = distance;
     found.hit.primID = arguments->primID;
     found.hit.geomID = arguments->geomID;
 }
@@ -69,7 +70,7 @@ public:
             rtcSetGeometryUserData(geometry_, &boxes_);
             rtcSetGeometryBoundsFunction(
                 geometry_, [](const RTCBoundsFunctionArguments* arguments) { bounds_of_box(arguments); }, nullptr);
-            rtcSetGeometryIntersectFunction(geometry_, meet_box);
+            rtcSetGeometryIntersectFunction(geometry_, intersect_box);
             if (scene.moves()) rtcSetGeometryBuildQuality(geometry_, RTC_BUILD_QUALITY_REFIT);
         }
         rtcCommitGeometry(geometry_);
@@ -84,9 +85,9 @@ public:
     void rays(std::span<const Ray> rays, std::vector<query::Hit>& out) const override {
         for (const Ray& ray : rays) out.push_back(nearest(ray));
     }
-    void boxes(std::span<const Aabb>, Lists&) const override {}
-    void frusta(std::span<const Frustum>, Lists&) const override {}
-    [[nodiscard]] bool rounds_its_own_way(const QueryScene&) const override { return true; }
+    void boxes(std::span<const Aabb>, AnswerLists&) const override {}
+    void frusta(std::span<const Frustum>, AnswerLists&) const override {}
+    [[nodiscard]] bool rounds_differently(const QueryScene&) const override { return true; }
     [[nodiscard]] std::string settings() const override {
         return std::string("Embree " RTC_VERSION_STRING
                            ", one ray at a time, robust; boxes as user geometry, refitted");

@@ -1,5 +1,5 @@
 #pragma once
-/// Embree: rays at triangles and at boxes.
+/// Embree in `fase bench queries`: rays against triangles and boxes.
 #include <memory>
 #include <string_view>
 
@@ -7,8 +7,7 @@
 
 namespace fase::bench {
 
-/// One thread. Triangles in its own robust mode; boxes as primitives of ours, with our exact test; boxes that move are
-/// refitted.
+/// One thread. Triangles in robust mode; boxes as user geometry with Fase's exact test; refits moving boxes.
 std::unique_ptr<QueryContender> make_embree(std::string_view name);
 
 }  // namespace fase::bench

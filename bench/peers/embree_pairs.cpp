@@ -1,4 +1,4 @@
-/// Embree's rtcCollide as `fase bench pairs` measures it.
+/// Embree's rtcCollide in `fase bench pairs`.
 #include <embree3/rtcore.h>
 
 #include "bench/pair_engine.hpp"
@@ -6,8 +6,8 @@
 namespace fase::bench {
 namespace {
 
-/// One user geometry with a primitive a box; the tree is built anew each frame, in the quick way that Embree has for
-/// scenes that change.
+/// One user geometry with one primitive per box. Rebuilds the tree in each frame with Embree's fast build for dynamic
+/// scenes.
 class EmbreePairs final : public PairEngine {
 public:
     explicit EmbreePairs(const PairScene& scene) : scene_(scene), boxes_(scene.boxes.begin(), scene.boxes.end()) {
@@ -35,7 +35,7 @@ public:
     }
     void find_pairs(std::vector<Pair>& out) override {
         out_ = &out;
-        rtcCollide(tree_, tree_, take, this);
+        rtcCollide(tree_, tree_, append, this);
     }
     [[nodiscard]] std::string settings() const override {
         const auto version = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION);
@@ -60,13 +60,13 @@ private:
         call->bounds_o->upper_y = box.hi.y;
         call->bounds_o->upper_z = box.hi.z;
     }
-    /// Leaves are reported, from both sides: one side and the exact boxes count.
-    static void take(void* data, RTCCollision* found, unsigned count) {
-        EmbreePairs& mine = *static_cast<EmbreePairs*>(data);
+    /// Embree reports pairs of leaves in both orders: keeps one order, and tests the exact boxes.
+    static void append(void* data, RTCCollision* found, unsigned count) {
+        EmbreePairs& self = *static_cast<EmbreePairs*>(data);
         for (unsigned k = 0; k < count; ++k) {
             const unsigned p = found[k].primID0, q = found[k].primID1;
-            if (p < q && overlaps(mine.boxes_[p], mine.boxes_[q]) && !mine.scene_.both_static(p, q))
-                mine.out_->push_back({p, q});
+            if (p < q && overlaps(self.boxes_[p], self.boxes_[q]) && !self.scene_.both_static(p, q))
+                self.out_->push_back({p, q});
         }
     }
 };

@@ -1,4 +1,4 @@
-/// The managers of the Flexible Collision Library as `fase bench pairs` measures them.
+/// The collision managers of FCL, the Flexible Collision Library, in `fase bench pairs`.
 #include <fcl/broadphase/broadphase_SaP.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 
@@ -7,7 +7,7 @@
 namespace fase::bench {
 namespace {
 
-/// A shape that has the box as bounds.
+/// A shape with the box as bounds.
 class Bounds final : public fcl::CollisionGeometryf {
 public:
     explicit Bounds(const Aabb& box) : box_(box) { computeLocalAABB(); }
@@ -56,8 +56,8 @@ public:
         }
     }
     void find_pairs(std::vector<Pair>& out) override {
-        Taking taking{scene_, out};
-        manager_->collide(&taking, take);
+        PairSink sink{scene_, out};
+        manager_->collide(&sink, append);
     }
     [[nodiscard]] std::string settings() const override {
         return "FCL " FCL_VERSION ", " + std::string(name_ == "fcl_sap" ? "SaP" : "DynamicAABBTree");
@@ -72,16 +72,16 @@ private:
     std::vector<std::unique_ptr<fcl::CollisionObjectf>> objects_;
     std::vector<fcl::CollisionObjectf*> changed_;
 
-    struct Taking {
+    struct PairSink {
         const PairScene& scene;
         std::vector<Pair>& out;
     };
-    static bool take(fcl::CollisionObjectf* one, fcl::CollisionObjectf* other, void* data) {
+    static bool append(fcl::CollisionObjectf* one, fcl::CollisionObjectf* other, void* data) {
         const auto p = reinterpret_cast<std::size_t>(one->getUserData());
         const auto q = reinterpret_cast<std::size_t>(other->getUserData());
-        const Taking& taking = *static_cast<Taking*>(data);
-        if (!taking.scene.both_static(p, q) && one->getAABB().overlap(other->getAABB()))
-            taking.out.push_back(broad::ordered_pair(static_cast<broad::Proxy>(p), static_cast<broad::Proxy>(q)));
+        const PairSink& sink = *static_cast<PairSink*>(data);
+        if (!sink.scene.both_static(p, q) && one->getAABB().overlap(other->getAABB()))
+            sink.out.push_back(broad::ordered_pair(static_cast<broad::Proxy>(p), static_cast<broad::Proxy>(q)));
         return false;
     }
 };

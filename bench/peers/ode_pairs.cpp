@@ -1,4 +1,4 @@
-/// The spaces of the Open Dynamics Engine as `fase bench pairs` measures them.
+/// The spaces of ODE, the Open Dynamics Engine, in `fase bench pairs`.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace fase::bench {
 namespace {
 
-/// A shape of its own that has the box as bounds, so that no rounding comes between.
+/// The bounds of a custom geometry class: the exact box, without rounding.
 void bounds_of(dGeomID geom, dReal out[6]) {
     const Aabb& box = **static_cast<const Aabb**>(dGeomGetClassData(geom));
     const float bounds[6] = {box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
@@ -35,37 +35,37 @@ public:
     OdePairs(const PairScene& scene, const std::string& name)
         : kind_(box_class()), name_(name), boxes_(scene.boxes.begin(), scene.boxes.end()) {
         Aabb world;
-        float least = Aabb::infinity, most = 0;
+        float smallest = Aabb::infinity, largest = 0;
         for (const Aabb& box : boxes_) {
             world = merge(world, box);
             const Vec3 sides = extent(box);
             const float side = std::max({sides.x, sides.y, sides.z});
-            least = std::min(least, side);
-            most = std::max(most, side);
+            smallest = std::min(smallest, side);
+            largest = std::max(largest, side);
         }
         if (name == "ode_quadtree") {
             const Vec3 middle = centre(world), half = extent(world) * 0.6f;
-            const dVector3 at{middle.x, middle.y, middle.z}, extents{half.x, half.y, half.z};
-            // Four boxes a cell of the lowest level, were they spread evenly.
+            const dVector3 position{middle.x, middle.y, middle.z}, extents{half.x, half.y, half.z};
+            // About four boxes per cell of the lowest level for uniformly distributed boxes.
             const int depth = std::clamp(static_cast<int>(std::log2(static_cast<double>(boxes_.size())) / 2) - 1, 2, 9);
-            space_ = dQuadTreeSpaceCreate(nullptr, at, extents, depth);
+            space_ = dQuadTreeSpaceCreate(nullptr, position, extents, depth);
         } else if (name == "ode_sap") {
             space_ = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XZY);
         } else {
             space_ = dHashSpaceCreate(nullptr);
-            dHashSpaceSetLevels(space_, static_cast<int>(std::floor(std::log2(std::max(least, 1e-6f)))),
-                                static_cast<int>(std::ceil(std::log2(std::max(most, 1e-6f)))));
+            dHashSpaceSetLevels(space_, static_cast<int>(std::floor(std::log2(std::max(smallest, 1e-6f)))),
+                                static_cast<int>(std::ceil(std::log2(std::max(largest, 1e-6f)))));
         }
         dSpaceSetCleanup(space_, 1);
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
             const dGeomID geom = dCreateGeom(kind_);
             *static_cast<const Aabb**>(dGeomGetClassData(geom)) = &boxes_[i];
             dGeomSetData(geom, reinterpret_cast<void*>(i));
-            const bool fixed = scene.motion_states[i] == MotionState::Static;
-            constexpr unsigned long still = 1, moving = 2;
-            dGeomSetCategoryBits(geom, fixed ? still : moving);
-            dGeomSetCollideBits(geom, fixed ? moving : moving | still);
-            place(geom, boxes_[i]);
+            const bool is_static = scene.motion_states[i] == MotionState::Static;
+            constexpr unsigned long static_bit = 1, moving_bit = 2;
+            dGeomSetCategoryBits(geom, is_static ? static_bit : moving_bit);
+            dGeomSetCollideBits(geom, is_static ? moving_bit : moving_bit | static_bit);
+            mark_moved(geom, boxes_[i]);
             dSpaceAdd(space_, geom);
             geoms_.push_back(geom);
         }
@@ -75,10 +75,10 @@ public:
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             if (boxes_[i] == boxes[i]) continue;
             boxes_[i] = boxes[i];
-            place(geoms_[i], boxes[i]);
+            mark_moved(geoms_[i], boxes[i]);
         }
     }
-    void find_pairs(std::vector<Pair>& out) override { dSpaceCollide(space_, &out, take); }
+    void find_pairs(std::vector<Pair>& out) override { dSpaceCollide(space_, &out, append); }
     [[nodiscard]] std::string settings() const override { return "ODE " + name_.substr(4) + " space"; }
 
 private:
@@ -88,9 +88,9 @@ private:
     dSpaceID space_ = nullptr;
     std::vector<dGeomID> geoms_;
 
-    /// Tells ODE that the bounds have changed.
-    static void place(dGeomID geom, const Aabb& box) { dGeomSetPosition(geom, box.lo.x, box.lo.y, box.lo.z); }
-    static void take(void* data, dGeomID one, dGeomID other) {
+    /// Marks the bounds of a geometry as changed.
+    static void mark_moved(dGeomID geom, const Aabb& box) { dGeomSetPosition(geom, box.lo.x, box.lo.y, box.lo.z); }
+    static void append(void* data, dGeomID one, dGeomID other) {
         const auto p = reinterpret_cast<std::size_t>(dGeomGetData(one));
         const auto q = reinterpret_cast<std::size_t>(dGeomGetData(other));
         static_cast<std::vector<Pair>*>(data)->push_back(

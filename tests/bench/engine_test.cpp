@@ -1,4 +1,4 @@
-/// Every engine of the list takes the same scene in the same way.
+/// Every engine of the list simulates the same scene alike.
 #include "bench/engine.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ scene::Scene one_body(const Shape& shape, BodyDef def, const ColliderDef& collid
     return scene;
 }
 
-/// Where the only dynamic body's centre is after so many steps.
+/// Returns the centre of the only dynamic body after some steps.
 Vec3d centre_after(const EngineInfo& info, const scene::Scene& scene, int steps) {
     EngineOptions options{scene::settings_for(scene)};
     options.settings.sleep = false;
@@ -39,13 +39,13 @@ Vec3d centre_after(const EngineInfo& info, const scene::Scene& scene, int steps)
     return centres.at(0);
 }
 
-TEST(Engines, FaseIsTheFirst) { EXPECT_EQ(engines().front().name, "fase"); }
+TEST(Engines, FaseIsFirstInTheList) { EXPECT_EQ(engines().front().name, "fase"); }
 
-TEST(Engines, AFallTakesOneStepAStep) {
+TEST(Engines, AFallingBodyCoversOneTimeStepPerStep) {
     for (const EngineInfo& info : engines()) {
         const Vec3d centre = centre_after(info, one_body(Sphere{0.5f}, {.position = {3, 100, 2}}), 60);
         EXPECT_NEAR(centre.x, 3, 1e-5) << info.name;
-        // Between the sum of a step's velocities and the parabola.
+        // Tolerance: the difference between semi-implicit Euler and the parabola.
         EXPECT_NEAR(centre.y, 100 - 9.81 / 2, 0.09) << info.name;
     }
 }
@@ -64,35 +64,35 @@ TEST(Engines, EveryShapeRestsOnTheGroundAtItsHeight) {
     }
 }
 
-TEST(Engines, TheCentreOfMassIsKeptWhereTheShapeIsBesideTheBody) {
-    ColliderDef beside;
-    beside.pose.position = {2, 0, 0};
+TEST(Engines, AShapeOffsetMovesTheCentreOfMass) {
+    ColliderDef offset;
+    offset.pose.position = {2, 0, 0};
     for (const EngineInfo& info : engines()) {
-        const scene::Scene scene = one_body(Box{{0.5f, 0.5f, 0.5f}}, {.position = {0, 0.5, 0}}, beside);
+        const scene::Scene scene = one_body(Box{{0.5f, 0.5f, 0.5f}}, {.position = {0, 0.5, 0}}, offset);
         const Vec3d centre = centre_after(info, scene, 60);
         EXPECT_NEAR(centre.x, 2, 0.01) << info.name;
         EXPECT_NEAR(centre.y, 0.5, 0.01) << info.name;
     }
 }
 
-TEST(Engines, FrictionIsTheSameForAll) {
+TEST(Engines, FrictionIsEqualInAllEngines) {
     // A box of friction a that slides on ground of friction b stops after v² / (2 g sqrt(a b)).
     for (const EngineInfo& info : engines()) {
-        ColliderDef smooth;
-        smooth.material.friction = 0.4f;
+        ColliderDef low_friction;
+        low_friction.material.friction = 0.4f;
         scene::Scene scene =
-            one_body(Box{{0.5f, 0.2f, 0.5f}}, {.position = {0, 0.2, 0}, .linear_velocity = {4, 0, 0}}, smooth);
+            one_body(Box{{0.5f, 0.2f, 0.5f}}, {.position = {0, 0.2, 0}, .linear_velocity = {4, 0, 0}}, low_friction);
         scene.bodies[0].colliders[0].def.material.friction = 0.9f;
         EXPECT_NEAR(centre_after(info, scene, 120).x, 16 / (2 * 9.81 * std::sqrt(0.4 * 0.9)), 0.08) << info.name;
     }
 }
 
-TEST(Engines, AKinematicDrumTurnsInAll) {
+TEST(Engines, AKinematicDrumTurnsInAllEngines) {
     const Result<scene::Scene> scene = scene::generate("washer", {.count = 64});
     ASSERT_TRUE(scene);
     EngineOptions options{scene::settings_for(*scene)};
     options.settings.sleep = false;
-    const double tilt_of_none = 0.02;
+    const double min_mean_offset = 0.02;  // metres; about 0 if the drum does not turn
     for (const EngineInfo& info : engines()) {
         Result<std::unique_ptr<Engine>> engine = info.make(*scene, options);
         ASSERT_TRUE(engine) << engine.error().text();
@@ -105,7 +105,7 @@ TEST(Engines, AKinematicDrumTurnsInAll) {
             sum += centre.x;
             EXPECT_GT(centre.y, 0) << info.name << " lost a cube";
         }
-        EXPECT_GT(sum / 64, tilt_of_none) << info.name << ": a drum that turns to +x takes the cubes along";
+        EXPECT_GT(sum / 64, min_mean_offset) << info.name << ": the drum turns towards +x and moves the cubes";
     }
 }
 

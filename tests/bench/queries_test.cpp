@@ -1,4 +1,4 @@
-/// Every contender for queries answers what the others answer; OBJ files are read or refused.
+/// All contenders give the same answers to queries; OBJ files are read or refused.
 #include "bench/queries.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 QueryOptions small() {
     QueryOptions options;
-    options.counts = {.things = 5000, .rays = 640, .boxes = 640, .frusta = 64};
+    options.counts = {.items = 5000, .rays = 640, .boxes = 640, .frusta = 64};
     options.rounds = 1;
     options.seconds = 20;
     return options;
@@ -33,7 +33,7 @@ TEST(Queries, AllContendersGiveTheSameAnswers) {
             EXPECT_GT(row.per_second, 0);
             EXPECT_LE(row.low, row.per_second);
             EXPECT_GE(row.high, row.per_second);
-            EXPECT_GT(row.asked, 0u);
+            EXPECT_GT(row.queries, 0u);
             EXPECT_LE(row.differ, row.compared / 200) << "of " << row.compared;
             EXPECT_FALSE(row.settings.empty());
             rays_hit += row.kind == "rays" ? row.hits : 0;
@@ -42,31 +42,31 @@ TEST(Queries, AllContendersGiveTheSameAnswers) {
     }
 }
 
-TEST(Queries, ThePileIsStirredAndStaysTogether) {
-    const QueryScene pile = stirred_pile({.things = 50000});
+TEST(Queries, ThePileMovesAndKeepsItsShape) {
+    const QueryScene pile = stirred_pile({.items = 50000});
     std::vector<broad::Move> begin, end;
-    pile.place(0, begin);
-    pile.place(pile.frames - 1, end);
+    pile.boxes_at(0, begin);
+    pile.boxes_at(pile.frames - 1, end);
     ASSERT_EQ(begin.size(), 1000u);
-    double most = 0;
+    double max_distance = 0;
     for (std::size_t i = 0; i < begin.size(); ++i) {
         const Vec3d a = to_double(centre(begin[i].box)), b = to_double(centre(end[i].box));
-        most = std::max(most, length(b - a));
+        max_distance = std::max(max_distance, length(b - a));
         EXPECT_NEAR(a.x * a.x + a.z * a.z, b.x * b.x + b.z * b.z, 0.05 * (1 + a.x * a.x + a.z * a.z));
         EXPECT_NEAR(a.y, b.y, 1e-4);
     }
-    EXPECT_GT(most, 5);
+    EXPECT_GT(max_distance, 5);
 }
 
-TEST(Queries, StopWhenTold) {
+TEST(Queries, StopWhenTheCallbackReturnsFalse) {
     const QueryOptions options = small();
-    int told = 0;
+    int calls = 0;
     const auto rows =
         measure_queries(static_boxes(options.counts), options,
-                        [&](std::uint64_t, std::uint64_t, std::string_view, std::string_view) { return ++told < 4; });
+                        [&](std::uint64_t, std::uint64_t, std::string_view, std::string_view) { return ++calls < 4; });
     ASSERT_TRUE(rows);
     EXPECT_TRUE(rows->empty());
-    EXPECT_EQ(told, 4);
+    EXPECT_EQ(calls, 4);
 }
 
 class Levels : public testing::Test {
@@ -87,7 +87,7 @@ TEST_F(Levels, AreReadFromObjFiles) {
     EXPECT_EQ(level->boxes[1].box, (Aabb{{0, 0, 0}, {1, 0, 1}}));
 }
 
-TEST_F(Levels, AreRefusedWithTheLine) {
+TEST_F(Levels, AreRefusedWithTheLineNumber) {
     for (const char* const text :
          {"v 0 0\n", "v 0 0 0\nf 1 1 2\n", "v 0 0 0\nf 1 1\n", "v 1 2 nan\n", "v 0 0 0\nf 0 1 1\n"}) {
         const auto level = read(text);

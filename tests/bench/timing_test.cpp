@@ -1,4 +1,4 @@
-/// Many times as a few numbers.
+/// Statistics of measured times.
 #include "bench/timing.hpp"
 
 #include <gtest/gtest.h>
@@ -6,18 +6,18 @@
 namespace fase::bench {
 namespace {
 
-TEST(Timing, OfNoneIsZero) {
+TEST(Timing, AnEmptyListGivesZero) {
     EXPECT_EQ(median_of({}), 0);
     EXPECT_EQ(timing_of({}).worst, 0);
 }
 
-TEST(Timing, MedianIsTheMiddleOrBetweenTheTwo) {
+TEST(Timing, TheMedianIsTheMiddleValueOrTheMeanOfTheTwo) {
     EXPECT_EQ(median_of(std::vector<double>{9, 1, 4}), 4);
     EXPECT_EQ(median_of(std::vector<double>{9, 1, 4, 2}), 3);
     EXPECT_EQ(median_of(std::vector<double>{7}), 7);
 }
 
-TEST(Timing, MeanAndWorst) {
+TEST(Timing, MeanMedianAndWorstAreOfAllTimes) {
     const Timing timing = timing_of(std::vector<double>{1, 2, 9});
     EXPECT_EQ(timing.mean, 4);
     EXPECT_EQ(timing.median, 2);
