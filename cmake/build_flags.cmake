@@ -30,3 +30,10 @@ function(fase_own_code target)
                                            # g++ 12 fuses in its SLP vectoriser, whatever -ffp-contract says, where FMA is on.
                                            $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 endfunction()
+
+# Parses `header` once for all sources of a target.
+function(fase_precompile target header)
+  if(FASE_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${header})
+  endif()
+endfunction()

@@ -57,18 +57,27 @@ install_packages() {
     [ ${#missing[@]} -eq 0 ] || stop "installed, but still not usable: ${missing[*]}"
 }
 
-# build PRESET [TARGET…]: configures when the build folder is new, then builds.
+# configure PRESET [OPTION=VALUE…]: makes the build folder, or changes these options of one that is there.
+configure() {
+    local preset=$1 option options=() changed=
+    shift
+    for option in "$@"; do
+        options+=(-D "$option")
+        grep -qE "^${option%%=*}:[A-Z]+=${option#*=}\$" "build/$preset/CMakeCache.txt" 2>/dev/null || changed=1
+    done
+    [ -n "$changed" ] || [ ! -e "build/$preset/build.ninja" ] || return 0
+    mkdir -p "build/$preset"
+    say "configuring build/$preset"
+    cmake --preset "$preset" "${options[@]}" >"build/$preset/configure.log" 2>&1 || {
+        tail -n 30 "build/$preset/configure.log" >&2
+        stop "cmake could not configure; the whole log: build/$preset/configure.log"
+    }
+}
+
+# build PRESET [TARGET…]: builds what configure() made.
 build() {
     local preset=$1
     shift
-    mkdir -p "build/$preset"
-    if [ ! -e "build/$preset/build.ninja" ]; then
-        say "configuring build/$preset"
-        cmake --preset "$preset" >"build/$preset/configure.log" 2>&1 || {
-            tail -n 30 "build/$preset/configure.log" >&2
-            stop "cmake could not configure; the whole log: build/$preset/configure.log"
-        }
-    fi
     say "building build/$preset"
     cmake --build "build/$preset" ${1:+--target "$@"}
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A stable 64-bit hash: the same bytes give the same number on every machine, for ever.
+/// A stable 64-bit hash: the same bytes give the same number on every machine and in every version.
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -19,10 +19,10 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x;
 }
 
-/// Collects plain values into one number; order counts. Not for secrets.
+/// Hashes a sequence of plain values into one number; order matters. Not cryptographic.
 class Hasher {
 public:
-    /// Adds one integer, enum, bool, float or double; -0.0 and 0.0 differ, as do the NaNs: bits count.
+    /// Adds one integer, enum, bool, float or double by its bits: -0.0 and 0.0 differ, and so do different NaNs.
     template <class T>
     requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void add(T value) {
         std::uint64_t word = 0;
@@ -35,7 +35,7 @@ public:
         }
         state_ = mix_bits(state_ + 0x9e3779b97f4a7c15ull) ^ mix_bits(word + 0x2545f4914f6cdd1dull) * 3;
     }
-    /// Adds bytes and their count; little-endian words, so the same on every machine.
+    /// Adds bytes and their count, as little-endian words, so that all machines agree.
     void add_bytes(std::span<const std::byte> bytes) {
         add(bytes.size());
         std::uint64_t word = 0;

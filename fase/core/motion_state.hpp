@@ -4,12 +4,12 @@
 
 namespace fase {
 
-/// Only awake boxes look for pairs, among themselves and against the other two sets.
+/// Pairs are found among awake boxes and between awake boxes and the other two sets.
 enum class MotionState : std::uint8_t {
     Static,  ///< may be moved, but two static boxes are never a pair
     Asleep,  ///< at rest until something changes or touches it
     Awake,
-    Absent,  ///< not in any set; only in lists of boxes that are known by their place
+    Absent,  ///< in no set; used only in lists of boxes that are identified by their index
 };
 
 }  // namespace fase

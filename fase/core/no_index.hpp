@@ -1,10 +1,10 @@
 #pragma once
-/// The index that stands for "none".
+/// The sentinel index.
 #include <cstdint>
 
 namespace fase {
 
-/// No element: every index and proxy of 32 bits is smaller.
+/// Means "no element": every valid index and proxy of 32 bits is smaller.
 inline constexpr std::uint32_t no_index = 0xffffffff;
 
 }  // namespace fase

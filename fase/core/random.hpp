@@ -1,19 +1,19 @@
 #pragma once
-/// Counter-based random numbers: draw n of stream s is a function of (seed, s, n), whatever was drawn before.
+/// Counter-based random numbers: draw n of stream s is a function of (seed, s, n) alone.
 #include <cstdint>
 
 #include "fase/core/hash.hpp"
 
 namespace fase {
 
-/// A stream of random numbers; copying it copies its place. Equal seeds and streams give equal numbers everywhere.
-/// Not for secrets.
+/// A stream of random numbers; a copy continues from the same position. Equal seeds and streams give equal numbers on
+/// every machine. Not cryptographic.
 class Random {
 public:
     explicit constexpr Random(std::uint64_t seed = 0, std::uint64_t stream = 0)
         : key_(mix_bits(seed + 0x9e3779b97f4a7c15ull) ^ mix_bits(stream * 0xd1342543de82ef95ull + 1)) {}
 
-    /// Draw `n` of this stream, without moving it.
+    /// Returns draw `n` of this stream without advancing it.
     [[nodiscard]] constexpr std::uint64_t at(std::uint64_t n) const {
         return mix_bits(mix_bits(n * 0x9e3779b97f4a7c15ull + key_) + key_);
     }

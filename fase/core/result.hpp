@@ -1,5 +1,5 @@
 #pragma once
-/// A value or an error in words; stands in for std::expected, which g++ 12 in C++20 lacks.
+/// A value or an error with a message; replaces std::expected, which g++ 12 in C++20 lacks.
 #include <cassert>
 #include <string>
 #include <utility>
@@ -7,21 +7,21 @@
 
 namespace fase {
 
-/// What kind of refusal an Error is; programs branch on it, people read the text.
+/// The category of an Error; programs branch on it, people read the text.
 enum class Status {
     Ok,
-    BadArgument,  ///< a number or a text that cannot be meant
-    BadHandle,    ///< an id that is stale, of another world, or never was
+    BadArgument,  ///< a number or a text that is not valid
+    BadHandle,    ///< an id that is stale, of another world, or was never issued
     OutOfRange,   ///< an index past the end, a coordinate past the stated range
     Capacity,     ///< a limit that the user set is reached
     NoMemory,
     Io,           ///< cannot open, read or write
-    Format,       ///< a file that is not what it should be
-    Unsupported,  ///< understood, but not done here
-    Busy,         ///< not now: the world is being stepped
+    Format,       ///< a file with invalid content
+    Unsupported,  ///< valid, but not supported
+    Busy,         ///< not possible while the world is being stepped
 };
 
-/// "BadArgument", "Io" …
+/// Returns the name of the enumerator: "BadArgument", "Io" …
 [[nodiscard]] constexpr const char* name_of(Status status) {
     switch (status) {
         case Status::Ok: return "Ok";
@@ -38,14 +38,14 @@ enum class Status {
     return "?";
 }
 
-/// What went wrong with something that came from outside, in words for the person who sent it.
+/// An error in the user's input, described for the user.
 struct Error {
     Status status = Status::BadArgument;
     std::string where;    ///< file, byte, node, field: "scene.gltf: nodes[3].mass", "BodyDef.position"
-    std::string problem;  ///< "found -2, need a number above 0"
+    std::string problem;  ///< "found -2; expected a number above 0"
     std::string remedy;   ///< "leave it out for a static body"; may be empty
 
-    /// One line: "where: problem; remedy".
+    /// Returns one line: "where: problem; remedy".
     [[nodiscard]] std::string text() const {
         std::string line = where.empty() ? problem : where + ": " + problem;
         if (!remedy.empty()) line += "; " + remedy;
@@ -53,8 +53,7 @@ struct Error {
     }
 };
 
-/// A value, or the Error that stands in its place. Test it before it is opened: opening the wrong side is a broken
-/// contract (assert in debug).
+/// A value or an Error. Test it before access: access to the wrong alternative breaks the contract (assert in debug).
 template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
@@ -79,14 +78,14 @@ public:
         assert(!has_value());
         return *std::get_if<1>(&state_);
     }
-    /// Status::Ok, or the error's.
+    /// Returns Status::Ok or the status of the error.
     [[nodiscard]] Status status() const { return has_value() ? Status::Ok : error().status; }
 
 private:
     std::variant<T, Error> state_;
 };
 
-/// Done, or the Error that says why not.
+/// Success or an Error.
 template <> class [[nodiscard]] Result<void> {
 public:
     Result() = default;

@@ -1,4 +1,4 @@
-/// The choice of targets that Highway offers, by names that people know.
+/// Selects Highway's targets by common names.
 #include "fase/core/simd.hpp"
 
 #include <hwy/targets.h>
@@ -10,11 +10,11 @@ namespace {
 
 struct Level {
     std::string_view name;
-    std::int64_t target;  // of Highway: a better one has a lower bit
+    std::int64_t target;  // Highway's bit: wider targets have lower bits
 };
 constexpr std::array levels{Level{"avx512", HWY_AVX3}, Level{"avx2", HWY_AVX2}, Level{"sse4", HWY_SSE4}};
 
-std::int64_t disabled = 0;  // as Highway was told
+std::int64_t disabled = 0;  // as passed to Highway
 
 void disable(std::int64_t targets) {
     disabled = targets;
@@ -34,9 +34,9 @@ std::string_view simd_level() {
 }
 
 std::string simd_levels() {
-    std::string all = "best";
-    for (const Level& level : levels) all += ", " + std::string(level.name);
-    return all;
+    std::string names = "best";
+    for (const Level& level : levels) names += ", " + std::string(level.name);
+    return names;
 }
 
 Result<void> limit_simd(std::string_view name) {
@@ -52,14 +52,14 @@ Result<void> limit_simd(std::string_view name) {
             const std::string best(simd_level());
             disable(before);
             return Error{Status::Unsupported, "SIMD level",
-                         "found \"" + std::string(name) + "\", which this processor lacks",
-                         "the best that it has is " + best};
+                         "found \"" + std::string(name) + "\", which this processor does not have",
+                         "its widest level is " + best};
         }
-        disable(level.target - 1);  // all that are better
+        disable(level.target - 1);  // all wider targets
         return {};
     }
-    return Error{Status::BadArgument, "SIMD level", "found \"" + std::string(name) + "\", need one of " + simd_levels(),
-                 ""};
+    return Error{Status::BadArgument, "SIMD level",
+                 "found \"" + std::string(name) + "\"; expected one of " + simd_levels(), ""};
 }
 
 }  // namespace fase

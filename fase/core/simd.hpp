@@ -1,5 +1,5 @@
 #pragma once
-/// Which vector instructions are used, of those that the processor has.
+/// Selects the vector instruction set at run time.
 #include <string>
 #include <string_view>
 
@@ -7,16 +7,16 @@
 
 namespace fase {
 
-/// "avx512", "avx2", "sse4", "scalar", or what another processor's is called: the widest that is used from now on.
-/// Results never depend on it; speed does.
+/// Returns the widest instruction set in use: "avx512", "avx2", "sse4", "scalar", or Highway's name on another
+/// processor. Only speed depends on it, results never do.
 [[nodiscard]] std::string_view simd_level();
 
-/// Uses no wider instructions than those of a level, one of simd_levels(), in the whole program: to measure what they
-/// are worth, or to find out whether a fault hangs on them. "best": all there are. BadArgument with the known levels;
-/// Unsupported for what this processor has not. Not while another thread works.
+/// Limits the program to the instructions of a level, one of simd_levels(): to measure their gain, or to check whether
+/// a fault depends on them. "best" removes the limit. BadArgument names the known levels; Unsupported for a level that
+/// the processor lacks. Do not call it while another thread runs library code.
 Result<void> limit_simd(std::string_view level);
 
-/// "best, avx512, avx2, sse4", of which the processor may lack some.
+/// Returns the known levels: "best, avx512, avx2, sse4"; the processor may lack some of them.
 [[nodiscard]] std::string simd_levels();
 
 }  // namespace fase

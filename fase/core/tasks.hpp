@@ -1,5 +1,5 @@
 #pragma once
-/// Who runs parallel work: oneTBB, one thread, or a scheduler of the user's own, behind one small interface.
+/// Interface to a task scheduler: oneTBB, a single thread, or the user's scheduler.
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -8,33 +8,34 @@
 
 namespace fase {
 
-/// Runs a loop's chunks on as many threads as it has. Results never depend on it: work is cut by count, not by threads.
+/// Runs the chunks of a loop on its threads. Results do not depend on it: work is split by item count, not by thread
+/// count.
 class TaskRunner {
 public:
     virtual ~TaskRunner() = default;
     /// Calls `chunk(i)` once for each i in 0..count-1, in any order, from any threads, and returns when all are done.
-    /// `chunk` does not throw. Called from inside a chunk it may run the inner loop serially.
+    /// `chunk` does not throw. A nested call from inside a chunk may run serially.
     virtual void run(std::size_t count, const std::function<void(std::size_t)>& chunk) = 0;
-    /// How many chunks may run at once; at least 1. Advice for how finely to cut.
+    /// Number of chunks that may run in parallel, at least 1: a hint for the chunk size.
     [[nodiscard]] virtual int threads() const = 0;
 };
 
-/// Runs everything on the calling thread, in order.
+/// Makes a runner that runs all chunks on the calling thread, in order.
 [[nodiscard]] std::unique_ptr<TaskRunner> make_serial_runner();
 
-/// Runs on `threads` threads of oneTBB, the caller among them; 0: as many as the machine has cores. 1 equals the serial
-/// runner. Several runners may live at once.
+/// Makes a runner on `threads` threads of oneTBB, the caller included; 0: the number of cores; 1: the serial runner.
+/// Several runners may exist at the same time.
 [[nodiscard]] std::unique_ptr<TaskRunner> make_thread_runner(int threads);
 
-/// Keeps the arithmetic of a chunk behind the change of the floating-point mode: compilers move it across when they see
-/// both.
+/// Calls `body` without inlining, so that the compiler cannot move its arithmetic across the change of the
+/// floating-point mode.
 template <class F> [[gnu::noinline]] void call_range(const F& body, std::size_t begin, std::size_t end) {
     body(begin, end);
 }
 
 /// Calls `body(begin, end)` for consecutive ranges of at most `grain` items that cover 0..count, in parallel.
-/// The ranges depend on count and grain alone. Runs on the caller when one range covers all. Chunks of more threads
-/// compute in the standard floating-point mode.
+/// The ranges depend on count and grain alone. A single range runs on the caller. Several ranges run in the standard
+/// floating-point mode.
 template <class F> void parallel_ranges(TaskRunner& tasks, std::size_t count, std::size_t grain, const F& body) {
     if (count == 0) return;
     const std::size_t chunks = (count + grain - 1) / grain;

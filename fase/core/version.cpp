@@ -1,4 +1,4 @@
-// The version that the library was built as.
+// The version of the library binary.
 #include "fase/core/version.hpp"
 
 namespace fase {

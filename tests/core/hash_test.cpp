@@ -1,4 +1,4 @@
-/// The hash: the same numbers for ever, and another for every other input.
+/// The hash: golden values, and different values for different inputs.
 #include "fase/core/hash.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ template <class... T> std::uint64_t hash_of(T... values) {
     return hasher.value();
 }
 
-// Golden: recordings and golden simulations hold these numbers. They change only with a line in the changelog.
+// Golden: recordings and golden simulations store these numbers. They change only with a line in the changelog.
 TEST(Hasher, gives_its_golden_values) {
     EXPECT_EQ(mix_bits(1), 0x5692161d100b05e5ull);
     EXPECT_EQ(Hasher().value(), 0x0000000000000000ull);
@@ -29,7 +29,7 @@ TEST(Hasher, gives_its_golden_values) {
     EXPECT_EQ(hash_of_text("fase ampla, fase estreita"), 0x14bc190e7138dba4ull);
 }
 
-TEST(Hasher, tells_order_count_and_bits_apart) {
+TEST(Hasher, distinguishes_order_count_and_bits) {
     EXPECT_NE(hash_of(1, 2), hash_of(2, 1));
     EXPECT_NE(hash_of(0), hash_of(0, 0));
     EXPECT_NE(hash_of(), hash_of(0));

@@ -1,4 +1,4 @@
-/// Ids: good ones are found, stale, foreign and made-up ones are refused.
+/// Ids: valid ids are found; stale, foreign and random ids are refused.
 #include "fase/core/ids.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ struct Thing;
 using ThingId = Id<Thing>;
 using Pool = IdPool<Thing>;
 
-TEST(Id, by_default_names_nothing) {
+TEST(Id, by_default_identifies_no_object) {
     Pool pool(0);
     EXPECT_FALSE(pool.contains({}));
     (void)pool.add();
@@ -23,7 +23,7 @@ TEST(Id, by_default_names_nothing) {
     EXPECT_EQ(sizeof(ThingId), 8u);
 }
 
-TEST(IdPool, gives_dense_indices_from_0_and_reuses_the_last_freed_first) {
+TEST(IdPool, issues_dense_indices_from_0_and_reuses_the_last_freed_first) {
     Pool pool(7);
     const ThingId a = pool.add(), b = pool.add(), c = pool.add();
     EXPECT_EQ(a.index, 0u);
@@ -43,17 +43,17 @@ TEST(IdPool, gives_dense_indices_from_0_and_reuses_the_last_freed_first) {
     EXPECT_FALSE(pool.alive_at(9));
 }
 
-TEST(IdPool, refuses_a_stale_id_though_its_slot_lives_again) {
+TEST(IdPool, refuses_a_stale_id_after_its_slot_is_reused) {
     Pool pool(1);
     const ThingId old = pool.add();
     EXPECT_TRUE(pool.remove(old));
     EXPECT_FALSE(pool.contains(old));
     EXPECT_FALSE(pool.remove(old)) << "twice";
-    const ThingId young = pool.add();
-    ASSERT_EQ(young.index, old.index);
+    const ThingId reused = pool.add();
+    ASSERT_EQ(reused.index, old.index);
     EXPECT_FALSE(pool.contains(old));
     EXPECT_FALSE(pool.remove(old));
-    EXPECT_TRUE(pool.contains(young));
+    EXPECT_TRUE(pool.contains(reused));
 }
 
 TEST(IdPool, refuses_the_ids_of_another_pool) {
@@ -74,7 +74,7 @@ TEST(IdPool, refuses_random_numbers) {
     for (int i = 0; i < 1000000; ++i) {
         const std::uint64_t bits = random.next();
         const auto id = std::bit_cast<ThingId>(bits);
-        // The one way to be right by chance: a real owner, index and generation.
+        // Valid by chance: a real owner, index and generation.
         const bool real = id.owner == 3 && id.index < 1000 && id.generation == 1;
         ASSERT_EQ(pool.contains(id), real);
     }
@@ -93,14 +93,14 @@ TEST(IdPool, retires_a_slot_whose_generations_are_used_up) {
     EXPECT_EQ(last.generation, 65535);
     EXPECT_TRUE(pool.remove(last));
     const ThingId next = pool.add();
-    EXPECT_NE(next.index, first.index) << "the worn slot must not come back with an old generation";
+    EXPECT_NE(next.index, first.index) << "the retired slot must not be reused with an old generation";
     EXPECT_FALSE(pool.contains(first));
     EXPECT_FALSE(pool.contains(last));
     EXPECT_FALSE(pool.alive_at(first.index));
     EXPECT_EQ(pool.count(), 1u);
 }
 
-TEST(IdPool, restored_from_its_parts_goes_on_as_before) {
+TEST(IdPool, restored_from_its_parts_continues_as_before) {
     Pool pool(1);
     std::vector<ThingId> ids;
     for (int i = 0; i < 20; ++i) ids.push_back(pool.add());
@@ -113,25 +113,25 @@ TEST(IdPool, restored_from_its_parts_goes_on_as_before) {
     for (int i = 0; i < 6; ++i) EXPECT_EQ(copy.add(), pool.add());
 }
 
-/// Against a list of everything that was ever given out.
-TEST(IdPool, agrees_with_a_plain_list_over_a_long_random_life) {
+/// Compares with a list of all issued ids.
+TEST(IdPool, agrees_with_a_plain_list_over_many_random_operations) {
     Pool pool(9);
-    std::vector<ThingId> given;
+    std::vector<ThingId> issued;
     std::vector<bool> alive;
     Random random(2);
     for (int round = 0; round < 3000; ++round) {
-        if (given.empty() || random.below(5) < 3) {
-            given.push_back(pool.add());
+        if (issued.empty() || random.below(5) < 3) {
+            issued.push_back(pool.add());
             alive.push_back(true);
         } else {
-            const std::size_t i = random.below(given.size());
-            ASSERT_EQ(pool.remove(given[i]), alive[i]);
+            const std::size_t i = random.below(issued.size());
+            ASSERT_EQ(pool.remove(issued[i]), alive[i]);
             alive[i] = false;
         }
         if (round % 50 != 0) continue;
         std::uint32_t count = 0;
-        for (std::size_t i = 0; i < given.size(); ++i) {
-            ASSERT_EQ(pool.contains(given[i]), alive[i]);
+        for (std::size_t i = 0; i < issued.size(); ++i) {
+            ASSERT_EQ(pool.contains(issued[i]), alive[i]);
             count += alive[i] ? 1 : 0;
         }
         ASSERT_EQ(pool.count(), count);

@@ -1,4 +1,4 @@
-/// Random numbers: golden, independent of the order of drawing, evenly spread.
+/// Random numbers: golden values, independent of the order of draws, uniform.
 #include "fase/core/random.hpp"
 
 #include <gtest/gtest.h>
@@ -19,23 +19,23 @@ TEST(Random, gives_its_golden_values) {
     EXPECT_EQ(Random().next(), 0x1525442b0c196746ull);
 }
 
-TEST(Random, at_is_the_draw_of_that_number_whatever_was_drawn_before) {
+TEST(Random, at_gives_the_same_draw_as_next) {
     Random random(5);
     for (std::uint64_t n = 0; n < 100; ++n) {
         (void)random.at(n * 31);
-        const std::uint64_t promised = random.at(n);
-        EXPECT_EQ(random.next(), promised);
+        const std::uint64_t expected = random.at(n);
+        EXPECT_EQ(random.next(), expected);
     }
 }
 
-TEST(Random, a_copy_goes_on_from_the_same_place) {
+TEST(Random, a_copy_continues_from_the_same_position) {
     Random random(5);
     for (int i = 0; i < 10; ++i) (void)random.next();
     Random copy = random;
     EXPECT_EQ(copy.next(), random.next());
 }
 
-TEST(Random, seeds_and_streams_have_nothing_in_common) {
+TEST(Random, seeds_and_streams_are_independent) {
     for (std::uint64_t other = 1; other < 50; ++other) {
         double seeds = 0, streams = 0;
         for (std::uint64_t n = 0; n < 200; ++n) {
@@ -48,7 +48,7 @@ TEST(Random, seeds_and_streams_have_nothing_in_common) {
 }
 
 /// Chi-squared over equal bins: within 5 standard deviations of its mean.
-template <std::size_t bins, class F> void expect_even(F&& draw) {
+template <std::size_t bins, class F> void expect_uniform(F&& draw) {
     constexpr int draws = 200000;
     std::array<int, bins> counts{};
     for (int i = 0; i < draws; ++i) ++counts.at(draw());
@@ -60,12 +60,12 @@ template <std::size_t bins, class F> void expect_even(F&& draw) {
 
 TEST(Random, is_uniform) {
     Random random(9);
-    expect_even<256>([&] { return random.next() >> 56; });
-    expect_even<256>([&] { return random.next() & 255; });
-    expect_even<100>([&] { return static_cast<std::size_t>(random.unit() * 100); });
-    expect_even<10>([&] { return random.below(10); });
-    // Successive draws, two by two.
-    expect_even<256>([&] { return (random.next() >> 60) * 16 + (random.next() >> 60); });
+    expect_uniform<256>([&] { return random.next() >> 56; });
+    expect_uniform<256>([&] { return random.next() & 255; });
+    expect_uniform<100>([&] { return static_cast<std::size_t>(random.unit() * 100); });
+    expect_uniform<10>([&] { return random.below(10); });
+    // Pairs of successive draws.
+    expect_uniform<256>([&] { return (random.next() >> 60) * 16 + (random.next() >> 60); });
 }
 
 TEST(Random, stays_in_its_range) {

@@ -1,4 +1,4 @@
-/// Result: a value or an error in words.
+/// Result: a value or an error.
 #include "fase/core/result.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace fase {
 namespace {
 
 Result<int> half_of(int n) {
-    if (n % 2 != 0) return Error{Status::BadArgument, "n", "found an odd number", "add 1"};
+    if (n % 2 != 0) return Error{Status::BadArgument, "n", "found 7; expected an even number", "add 1"};
     return n / 2;
 }
 
@@ -25,23 +25,23 @@ TEST(Result, holds_the_error) {
     const Result<int> result = half_of(7);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.status(), Status::BadArgument);
-    EXPECT_EQ(result.error().text(), "n: found an odd number; add 1");
+    EXPECT_EQ(result.error().text(), "n: found 7; expected an even number; add 1");
 }
 
 TEST(Result, moves_what_cannot_be_copied) {
     Result<std::unique_ptr<int>> result = std::make_unique<int>(5);
-    const std::unique_ptr<int> taken = *std::move(result);
-    EXPECT_EQ(*taken, 5);
+    const std::unique_ptr<int> moved = *std::move(result);
+    EXPECT_EQ(*moved, 5);
 }
 
-TEST(Result, reaches_into_its_value) {
+TEST(Result, gives_access_to_its_value) {
     Result<std::string> result = std::string("abc");
     EXPECT_EQ(result->size(), 3u);
     *result += "d";
     EXPECT_EQ(*result, "abcd");
 }
 
-TEST(Result, of_nothing_is_done_or_an_error) {
+TEST(Result, of_void_is_success_or_an_error) {
     const Result<void> done;
     EXPECT_TRUE(done);
     EXPECT_EQ(done.status(), Status::Ok);
@@ -51,7 +51,7 @@ TEST(Result, of_nothing_is_done_or_an_error) {
     EXPECT_EQ(failed.error().text(), "a.bin: cannot open");
 }
 
-TEST(Error, leaves_out_what_is_empty) {
+TEST(Error, omits_empty_parts) {
     EXPECT_EQ((Error{Status::Io, "", "disk full", ""}).text(), "disk full");
     EXPECT_EQ((Error{Status::Io, "", "disk full", "free some"}).text(), "disk full; free some");
 }

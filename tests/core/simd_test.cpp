@@ -1,3 +1,4 @@
+/// The choice of the SIMD level.
 #include "fase/core/simd.hpp"
 
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 namespace fase {
 namespace {
 
-TEST(Simd, CanBeLimitedToWhatTheProcessorHas) {
+TEST(Simd, CanBeLimitedToAnyLevelOfTheProcessor) {
     const std::string best(simd_level());
     bool any = false;
     for (const char* level : {"sse4", "avx2", "avx512"}) {
@@ -15,15 +16,15 @@ TEST(Simd, CanBeLimitedToWhatTheProcessorHas) {
             any = true;
         } else {
             EXPECT_EQ(limited.status(), Status::Unsupported);
-            EXPECT_EQ(simd_level(), best) << "a level that it lacks changes nothing";
+            EXPECT_EQ(simd_level(), best) << "a missing level changes nothing";
         }
     }
     ASSERT_TRUE(limit_simd("best"));
     EXPECT_EQ(simd_level(), best);
-    if (!any) GTEST_SKIP() << "skipped: a processor of another kind";
+    if (!any) GTEST_SKIP() << "skipped: not an x86 processor";
 }
 
-TEST(Simd, NamesItsLevelsWhenAskedForAnother) {
+TEST(Simd, AnUnknownLevelIsRefusedWithTheKnownOnes) {
     const Result<void> limited = limit_simd("mmx");
     ASSERT_FALSE(limited);
     EXPECT_EQ(limited.status(), Status::BadArgument);

@@ -1,4 +1,4 @@
-/// Task runners: every chunk once, the same results for any of them.
+/// Task runners: each runs every chunk once, and all give the same results.
 #include "fase/core/tasks.hpp"
 
 #include <gtest/gtest.h>
@@ -9,12 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "fase/core/detail/thread_pool.hpp"
 #include "fase/core/random.hpp"
 
 namespace fase {
 namespace {
 
-/// What a user may bring along: a thread for each of two halves, the second from the back.
+/// A user's scheduler: one thread for each of two halves, the second in reverse order.
 class TwoThreads final : public TaskRunner {
 public:
     void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
@@ -30,7 +31,7 @@ public:
     std::atomic<int> runs = 0;
 };
 
-/// Every runner there is, by name.
+/// All runners, with names.
 struct NamedRunner {
     const char* name;
     std::unique_ptr<TaskRunner> runner;
@@ -41,8 +42,10 @@ std::vector<NamedRunner> all_runners() {
     runners.push_back({"one thread", make_thread_runner(1)});
     runners.push_back({"two threads", make_thread_runner(2)});
     runners.push_back({"four threads", make_thread_runner(4)});
-    runners.push_back({"as many as cores", make_thread_runner(0)});
-    runners.push_back({"the user's own", std::make_unique<TwoThreads>()});
+    runners.push_back({"one thread per core", make_thread_runner(0)});
+    runners.push_back({"two threads of the pool", detail::make_thread_pool(2)});
+    runners.push_back({"four threads of the pool", detail::make_thread_pool(4)});
+    runners.push_back({"user's runner", std::make_unique<TwoThreads>()});
     return runners;
 }
 
@@ -70,7 +73,7 @@ TEST(TaskRunner, serial_runs_on_the_caller_in_order) {
     EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
-TEST(ParallelRanges, cover_all_items_once_with_ranges_that_count_and_grain_alone_decide) {
+TEST(ParallelRanges, cover_all_items_once_with_ranges_that_depend_on_count_and_grain_only) {
     for (const auto& [name, runner] : all_runners()) {
         for (const std::size_t count : {0u, 1u, 9u, 10u, 11u, 1000u, 1003u}) {
             constexpr std::size_t grain = 10;
@@ -86,7 +89,7 @@ TEST(ParallelRanges, cover_all_items_once_with_ranges_that_count_and_grain_alone
     }
 }
 
-/// A sum of floats in ranges is order-dependent; the ranges do not depend on the runner, so the bits do not either.
+/// A sum of floats depends on the order; the ranges do not depend on the runner, so the bits do not either.
 TEST(ParallelRanges, give_the_same_bits_on_every_runner) {
     Random random(1);
     std::vector<float> values(100003);
@@ -104,9 +107,9 @@ TEST(ParallelRanges, give_the_same_bits_on_every_runner) {
         return sum;
     };
     const auto runners = all_runners();
-    const float right = sum_on(*runners[0].runner);
+    const float expected = sum_on(*runners[0].runner);
     for (const auto& [name, runner] : runners) {
-        for (int repeat = 0; repeat < 20; ++repeat) ASSERT_EQ(sum_on(*runner), right) << name;
+        for (int repeat = 0; repeat < 20; ++repeat) ASSERT_EQ(sum_on(*runner), expected) << name;
     }
 }
 
@@ -126,23 +129,22 @@ TEST(ParallelRanges, may_be_nested) {
 }
 
 TEST(TaskRunner, may_have_more_threads_than_the_machine_has_cores) {
-    const int wanted = static_cast<int>(std::thread::hardware_concurrency()) + 2;
+    const int requested = static_cast<int>(std::thread::hardware_concurrency()) + 2;
     testing::internal::CaptureStderr();
-    const auto many = make_thread_runner(wanted);
-    EXPECT_EQ(many->threads(), wanted);
-    // Each chunk waits until all have come, so only as many threads as chunks can end this; the clock ends it
-    // otherwise.
-    std::atomic<int> came = 0;
-    const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    many->run(static_cast<std::size_t>(wanted), [&](std::size_t) {
-        ++came;
-        while (came < wanted && std::chrono::steady_clock::now() < late) std::this_thread::yield();
+    const auto many = make_thread_runner(requested);
+    EXPECT_EQ(many->threads(), requested);
+    // Each chunk waits until all have started, so it ends only with one thread per chunk, or at the deadline.
+    std::atomic<int> started = 0;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    many->run(static_cast<std::size_t>(requested), [&](std::size_t) {
+        ++started;
+        while (started < requested && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
     });
-    EXPECT_LT(std::chrono::steady_clock::now(), late) << "fewer threads than asked for";
+    EXPECT_LT(std::chrono::steady_clock::now(), deadline) << "fewer threads than requested";
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the library prints nothing";
 }
 
-TEST(ParallelRanges, do_not_bother_the_runner_for_one_range) {
+TEST(ParallelRanges, do_not_use_the_runner_for_one_range) {
     TwoThreads runner;
     const auto caller = std::this_thread::get_id();
     parallel_ranges(runner, 10, 10, [&](std::size_t, std::size_t) { EXPECT_EQ(std::this_thread::get_id(), caller); });
@@ -151,7 +153,7 @@ TEST(ParallelRanges, do_not_bother_the_runner_for_one_range) {
     EXPECT_EQ(runner.runs, 1);
 }
 
-TEST(TaskRunner, several_live_side_by_side) {
+TEST(TaskRunner, several_can_exist_at_the_same_time) {
     const auto two = make_thread_runner(2), four = make_thread_runner(4);
     std::atomic<int> sum = 0;
     std::thread other([&] { two->run(1000, [&](std::size_t) { ++sum; }); });

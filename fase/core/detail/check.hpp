@@ -1,6 +1,6 @@
 #pragma once
-/// Checks of our own invariants and of contracts: what is on in release, and what only in debug.
+/// Assertions on contracts inside the library.
 #include <cassert>
 
-/// A broken contract of the caller inside the library: stops in debug, costs nothing in release.
+/// Stops in a debug build when a caller inside the library breaks a contract; costs nothing in release.
 #define FASE_ASSERT(condition) assert(condition)

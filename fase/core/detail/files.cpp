@@ -2,7 +2,7 @@
 #include "fase/core/detail/files.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include "fase/core/detail/text.hpp"
 
 namespace fase {
 namespace {
@@ -26,7 +27,7 @@ public:
     }
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] bool good() const { return number_ >= 0; }
-    /// Closes now; false when the last bytes could not be written.
+    /// Closes now; returns false when the last bytes could not be written.
     bool close() {
         const int number = number_;
         number_ = -1;
@@ -37,18 +38,18 @@ private:
     int number_;
 };
 
-Error io_error(const std::string& path, std::string_view doing) {
-    return {Status::Io, path, fmt::format("cannot {}: {}", doing, std::strerror(errno)), {}};
+Error io_error(const std::string& path, std::string_view verb) {
+    return {Status::Io, path, detail::format("cannot {}: {}", verb, std::strerror(errno)), {}};
 }
 
-std::string_view kind_of(mode_t mode) {
+std::string_view file_type_name(mode_t mode) {
     if (S_ISDIR(mode)) return "a folder";
     if (S_ISFIFO(mode)) return "a pipe";
     if (S_ISSOCK(mode)) return "a socket";
     return "a device";
 }
 
-/// Where a path leads when all links are followed; the path itself when that cannot be found out.
+/// Resolves all symbolic links of a path; returns the path itself when that fails.
 std::string real_path(const std::string& path) {
     const std::unique_ptr<char, void (*)(void*)> real(::realpath(path.c_str(), nullptr), std::free);
     return real ? real.get() : path;
@@ -78,7 +79,10 @@ Result<FileStart> read_start(const std::string& path, std::size_t count) {
     struct stat about = {};
     if (::fstat(file.number(), &about) != 0) return io_error(path, "open");
     if (!S_ISREG(about.st_mode))
-        return Error{Status::Format, path, fmt::format("found {}, need a regular file", kind_of(about.st_mode)), {}};
+        return Error{Status::Format,
+                     path,
+                     detail::format("found {}; expected a regular file", file_type_name(about.st_mode)),
+                     {}};
     FileStart start;
     start.size = static_cast<std::uint64_t>(about.st_size);
     start.bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(start.size, count)));
@@ -94,32 +98,33 @@ Result<FileStart> read_start(const std::string& path, std::size_t count) {
     return start;
 }
 
-Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t most) {
+Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t max_bytes) {
     const Result<FileStart> head = read_start(path, 0);
     if (!head) return head.error();
-    if (head->size > most)
-        return Error{Status::Format, path, fmt::format("found {} bytes, need at most {}", head->size, most), {}};
-    Result<FileStart> whole = read_start(path, most);
-    if (!whole) return whole.error();
-    return std::move(whole->bytes);
+    if (head->size > max_bytes)
+        return Error{
+            Status::Format, path, detail::format("found {} bytes; expected at most {}", head->size, max_bytes), {}};
+    Result<FileStart> content = read_start(path, max_bytes);
+    if (!content) return content.error();
+    return std::move(content->bytes);
 }
 
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes) {
     struct stat about = {};
     const bool exists = ::stat(path.c_str(), &about) == 0;
-    if (exists && S_ISDIR(about.st_mode)) return Error{Status::Io, path, "found a folder, need a file's name", {}};
+    if (exists && S_ISDIR(about.st_mode)) return Error{Status::Io, path, "found a folder; expected a file name", {}};
     if (exists && !S_ISREG(about.st_mode)) {
         Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
         if (!device.good()) return io_error(path, "open");
         if (!write_all(device.number(), bytes) || !device.close()) return io_error(path, "write");
         return {};
     }
-    // A link keeps pointing where it did: what it points at is replaced.
+    // Keep a symbolic link and replace its target.
     const std::string target = exists ? real_path(path) : path;
     std::string part;
     int number = -1;
     for (int i = 0; i < 100 && number < 0; ++i) {
-        part = fmt::format("{}.part{}-{}", target, ::getpid(), i);
+        part = detail::format("{}.part{}-{}", target, ::getpid(), i);
         number = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (number < 0 && errno != EEXIST) break;
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Whole files: only regular ones are read, only whole ones are written.
+/// Reads and writes complete files: reads regular files only, writes atomically.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,24 +10,24 @@
 
 namespace fase {
 
-/// All bytes of a regular file. Io when it cannot be opened or read, Format when it is a folder, a pipe or a device (it
-/// is not waited for) or larger than `most` bytes. `where` of the error is the path.
-Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t most);
+/// Reads all bytes of a regular file. Io when it cannot be opened or read; Format when it is a folder, a pipe or a
+/// device (never blocks on those) or larger than `max_bytes`. `where` of the error is the path.
+Result<std::vector<std::byte>> read_file(const std::string& path, std::size_t max_bytes);
 
 /// The first bytes of a regular file, and its size.
 struct FileStart {
-    std::vector<std::byte> bytes;  ///< as many as asked for, or the whole of a shorter file
+    std::vector<std::byte> bytes;  ///< the requested count, or all bytes of a shorter file
     std::uint64_t size = 0;
 };
-/// Reads at most `count` bytes; errors as of read_file().
+/// Reads at most `count` bytes; same errors as read_file().
 Result<FileStart> read_start(const std::string& path, std::size_t count);
 
-/// Writes a file so that its name holds the old bytes or all of the new, never a part: into a new file beside it,
-/// renamed at the end. A device or pipe is written to directly. Io with the path on any failure; then nothing of the
-/// new file is left.
+/// Writes a file atomically: readers see the old bytes or all new ones, never a part. Writes a temporary file in the
+/// same folder and renames it at the end. Writes to a device or pipe directly. Io with the path on any failure; the
+/// temporary file is removed then.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 
-/// The folder of a path: "a/b.gltf" -> "a", "b.gltf" -> ".".
+/// Returns the folder of a path: "a/b.gltf" -> "a", "b.gltf" -> ".".
 [[nodiscard]] std::string folder_of(const std::string& path);
 
 }  // namespace fase

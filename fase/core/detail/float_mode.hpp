@@ -1,13 +1,13 @@
 #pragma once
-/// Holds the processor's floating-point mode at its standard while a step runs.
+/// Sets the processor's floating-point mode to the IEEE default while a step runs.
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
 
 namespace fase {
 
-/// Round to nearest, denormals kept, traps off, on this thread, for as long as the object lives; then as before. A host
-/// program that flushes denormals to zero gets the same bits as any other.
+/// Sets round to nearest, denormals on, traps off for this thread, and restores the previous mode in its destructor.
+/// So a host program that flushes denormals to zero gets the same bits as any other.
 class StandardFloats {
 public:
 #if defined(__SSE__)

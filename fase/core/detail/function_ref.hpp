@@ -1,5 +1,5 @@
 #pragma once
-/// A callable that is passed down without being stored.
+/// A non-owning reference to a callable.
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -8,14 +8,14 @@ namespace fase {
 
 template <class Signature> class FunctionRef;
 
-/// Refers to a callable that outlives the call it is handed to; two pointers, copied by value, never empty. For
-/// callbacks through code that is compiled once; where the callable can be a template parameter, that is faster.
+/// Refers to a callable that outlives the call that receives it; two pointers, copied by value, never empty. For
+/// callbacks through non-template code; a template parameter is faster where one is possible.
 template <class Result, class... Arguments> class FunctionRef<Result(Arguments...)> {
 public:
     template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<Result, F&, Arguments...> &&
              !std::is_function_v<std::remove_reference_t<F>>)
-        FunctionRef(F&& callable)  // NOLINT(google-explicit-constructor): any callable will do at the place of the call
+        FunctionRef(F&& callable)  // NOLINT(google-explicit-constructor): callers pass any callable
         : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
           call_([](void* object, Arguments... arguments) -> Result {
               return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Arguments>(arguments)...);

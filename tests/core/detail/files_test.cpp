@@ -1,4 +1,4 @@
-/// Tests of reading and writing whole files.
+/// Reading and writing complete files.
 #include "fase/core/detail/files.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Files, ReadsARegularFile) {
     EXPECT_EQ(read_start(folder / "a", 2)->size, 5u);
 }
 
-TEST(Files, RefusesWhatIsNoRegularFile) {
+TEST(Files, RefusesPipesFoldersAndDevices) {
     const TemporaryFolder folder;
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_EQ(read_file(folder / "pipe", 100).status(), Status::Format);
@@ -35,7 +35,7 @@ TEST(Files, RefusesWhatIsNoRegularFile) {
     EXPECT_EQ(read_file("/dev/zero", 100).error().where, "/dev/zero");
 }
 
-TEST(Files, WritesWholeFilesOnly) {
+TEST(Files, WritesAtomically) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_file(folder / "a", test::bytes_of("one")));
     ASSERT_TRUE(write_file(folder / "a", test::bytes_of("two")));
@@ -47,7 +47,7 @@ TEST(Files, WritesWholeFilesOnly) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "a temporary file was left";
 }
 
-TEST(Files, LeaveNothingBehindWhenWritingFails) {
+TEST(Files, LeavesNoTemporaryFileWhenWritingFails) {
     const TemporaryFolder folder;
     EXPECT_EQ(write_file(folder.path(), test::bytes_of("x")).status(), Status::Io);
     EXPECT_EQ(write_file(folder / "none/a", test::bytes_of("x")).status(), Status::Io);

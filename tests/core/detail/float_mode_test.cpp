@@ -1,4 +1,4 @@
-/// The standard floating-point mode, whatever the host program has set.
+/// The standard floating-point mode is set in any mode of the host program.
 #include "fase/core/detail/float_mode.hpp"
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@ namespace {
 
 #if defined(__SSE__)
 
-/// Not inlined, for compilers move arithmetic across a change of the mode.
+/// Not inlined, because compilers move arithmetic across a change of the mode.
 [[gnu::noinline]] float half_of_the_smallest_normal() {
     volatile float smallest = std::numeric_limits<float>::min();
     return smallest / 2;
 }
 
-/// A host that flushes denormals; comparisons with them are right only after it has gone.
+/// A host that flushes denormals; comparisons with denormals are correct only after its destruction.
 class FlushingHost {
 public:
     FlushingHost() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }
@@ -31,7 +31,7 @@ private:
     unsigned before_;
 };
 
-TEST(StandardFloats, keep_denormals_and_put_the_mode_of_the_host_back) {
+TEST(StandardFloats, keep_denormals_and_restore_the_mode_of_the_host) {
     float outside = 1, within = 0, after = 1;
     {
         const FlushingHost host;
@@ -47,7 +47,7 @@ TEST(StandardFloats, keep_denormals_and_put_the_mode_of_the_host_back) {
     EXPECT_EQ(after, 0);
 }
 
-TEST(StandardFloats, hold_in_the_chunks_of_every_runner) {
+TEST(StandardFloats, are_set_in_the_chunks_of_every_runner) {
     for (const auto& runner : {make_serial_runner(), make_thread_runner(3)}) {
         std::vector<float> found(100, std::numeric_limits<float>::min());
         {
