@@ -1,13 +1,14 @@
 #pragma once
-/// What may move a body, and along which axes.
+/// Body kinds and axis locks.
 #include <cstdint>
 
 namespace fase {
 
-/// Static bodies never move; kinematic ones move as told, nothing pushes them; dynamic ones obey forces.
+/// Static bodies never move. Kinematic bodies move with the velocity set by the user and are not affected by forces or
+/// contacts. Dynamic bodies respond to both.
 enum class BodyKind : std::uint8_t { Static, Kinematic, Dynamic };
 
-/// World axes that a dynamic body may not move along or turn about.
+/// World axes along which a dynamic body cannot move, or about which it cannot rotate.
 struct AxisLocks {
     bool linear_x = false, linear_y = false, linear_z = false;
     bool angular_x = false, angular_y = false, angular_z = false;

@@ -1,4 +1,4 @@
-/// Combining two materials.
+/// Combines two materials.
 #include "fase/dynamics/material.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// One sorted set, searched in chunks.
+/// Searches one sorted set in chunks.
 #include "fase/pairs/frame_pairs.hpp"
 
 #include "fase/broad/row_grid/chunks.hpp"
@@ -12,7 +12,7 @@ void FramePairs::find(TaskRunner& tasks, std::vector<Pair>& out) const {
     using namespace row_grid;
     const RowView set = sorted_.view();
     const RowCuts cuts(set.levels);
-    find_in_chunks(&tasks, cuts.chunks(), out, [&](std::size_t chunk, PairBlock& block) {
+    find_in_chunks(&tasks, cuts.chunks(), buffers_, out, [&](std::size_t chunk, PairBlock& block) {
         const RecordSpan records = cuts[chunk];
         find_own_pairs(set, records.begin, records.end, block);
     });

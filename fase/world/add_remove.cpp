@@ -1,4 +1,4 @@
-/// Bodies and colliders come and go.
+/// World: adding and removing bodies and colliders.
 #include <algorithm>
 #include <new>
 
@@ -10,7 +10,7 @@ namespace {
 
 Result<void> check_def(const BodyDef& def) {
     if (auto r = check_position(def.position, "BodyDef.position"); !r) return r;
-    if (auto rotation = usable(def.rotation, "BodyDef.rotation"); !rotation) return rotation.error();
+    if (auto rotation = check_rotation(def.rotation, "BodyDef.rotation"); !rotation) return rotation.error();
     if (!is_finite(def.linear_velocity))
         return refused("BodyDef.linear_velocity", "a number that is not finite", "m/s");
     if (!is_finite(def.angular_velocity))
@@ -18,7 +18,7 @@ Result<void> check_def(const BodyDef& def) {
     if (auto r = check_number(def.linear_damping, 0, "BodyDef.linear_damping"); !r) return r;
     if (auto r = check_number(def.angular_damping, 0, "BodyDef.angular_damping"); !r) return r;
     if (auto r = check_number(def.gravity_scale, -Aabb::infinity, "BodyDef.gravity_scale"); !r) return r;
-    if (def.kind > BodyKind::Dynamic) return refused("BodyDef.kind", "a number that names no kind", "a BodyKind");
+    if (def.kind > BodyKind::Dynamic) return refused("BodyDef.kind", "an unknown kind", "a BodyKind");
     if (def.mass)
         if (auto checked = check(*def.mass); !checked) {
             Error error = checked.error();
@@ -30,7 +30,8 @@ Result<void> check_def(const BodyDef& def) {
 
 Result<void> check_def(const ColliderDef& def) {
     if (!is_finite(def.pose.position)) return refused("ColliderDef.pose", "a number that is not finite", "metres");
-    if (auto rotation = usable(def.pose.rotation, "ColliderDef.pose.rotation"); !rotation) return rotation.error();
+    if (auto rotation = check_rotation(def.pose.rotation, "ColliderDef.pose.rotation"); !rotation)
+        return rotation.error();
     if (auto r = check_number(def.density, 0, "ColliderDef.density"); !r) return r;
     return check(def.material);
 }
@@ -45,16 +46,16 @@ Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef
 }
 
 BodyId make_body(WorldState& state, const BodyDef& def) {
-    // All that may run out of memory comes first.
+    // Allocate first, so that nothing has changed when memory runs out.
     const std::size_t slots = state.body_ids.size() + 1;
-    const auto make_room = [&](auto& array) {  // by doubling: one more each time would copy all each time
+    const auto reserve_slot = [&](auto& array) {  // doubles, for amortised O(1)
         if (array.capacity() < slots) array.reserve(2 * slots);
     };
-    make_room(state.bodies.traits);
-    make_room(state.bodies.motion);
-    make_room(state.bodies.forces);
-    make_room(state.awake);
-    make_room(state.asleep);
+    reserve_slot(state.bodies.traits);
+    reserve_slot(state.bodies.motion);
+    reserve_slot(state.bodies.forces);
+    reserve_slot(state.awake);
+    reserve_slot(state.asleep);
     const BodyId id = state.body_ids.add();
     state.bodies.resize(state.body_ids.size());
     dynamics::BodyTraits traits;
@@ -83,8 +84,8 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
     const std::span<const std::uint32_t> one(&id.index, 1);
     if (traits.motion_state == MotionState::Awake) insert_ascending(state.awake, one);
     if (traits.motion_state == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
-    renew_mass(state, id.index);
-    if (def.kind != BodyKind::Static) {  // the velocity given is that of the centre of mass
+    update_mass(state, id.index);
+    if (def.kind != BodyKind::Static) {  // BodyDef gives the velocity of the centre of mass
         state.bodies.motion[id.index].linear_velocity = def.linear_velocity;
         state.bodies.motion[id.index].angular_velocity = def.angular_velocity;
     }
@@ -98,14 +99,14 @@ void unlink_collider(WorldState& state, std::uint32_t index) {
     *link = state.colliders[index].next;
 }
 
-/// Takes a collider out of everything but its body's chain.
+/// Removes a collider from everything except the collider list of its body.
 void drop_collider(WorldState& state, std::uint32_t index) {
     const Collider& collider = state.colliders[index];
-    broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[collider.body].motion_state);
+    broad::AnyStructure& boxes = state.box_sets.of(state.bodies.traits[collider.body].motion_state);
     boxes.erase(std::span(&index, 1));
     release_shape(state, collider.shape);
     state.collider_ids.remove(*state.collider_ids.id_at(index));
-    note_edit(state, index);
+    mark_edited(state, index);
     state.removed_any = true;
 }
 
@@ -131,13 +132,13 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, const Shape& sha
     while (*link != no_index) link = &state.colliders[*link].next;
     *link = id.index;
     const LocalPose frame_before = traits.principal;
-    renew_mass(state, body);
-    state.boxes[id.index] = reaching_box(state, id.index, 0, 0);
+    update_mass(state, body);
+    state.boxes[id.index] = speculative_box(state, id.index, 0, 0);
     const broad::Move move{id.index, state.boxes[id.index]};
-    broad::AnyStructure& boxes = boxes_of(state, traits.motion_state);
+    broad::AnyStructure& boxes = state.box_sets.of(traits.motion_state);
     boxes.insert(std::span(&move, 1));
-    note_edit(state, id.index);
-    if (!(frame_before == traits.principal)) renew_boxes(state, body);
+    mark_edited(state, id.index);
+    if (!(frame_before == traits.principal)) update_boxes(state, body);
     return id;
 }
 
@@ -149,7 +150,7 @@ Result<BodyId> World::add_body(const BodyDef& def) {
     try {
         return make_body(*state_, def);
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::add_body", "no memory for a body", ""};
+        return Error{Status::NoMemory, "World::add_body", "out of memory for a body", ""};
     }
 }
 
@@ -161,9 +162,9 @@ Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const Col
         static_cast<void>(remove_body(*body));
         return added.error();
     }
-    // The collider may have moved the centre of mass: the velocity given is the centre's.
+    // The collider may have moved the centre of mass; BodyDef gives the velocity of the new one.
     if (def.kind != BodyKind::Static) state_->bodies.motion[body->index].linear_velocity = def.linear_velocity;
-    if (!def.awake) std::erase(state_->wake_wanted, body->index);
+    if (!def.awake) std::erase(state_->bodies_to_wake, body->index);
     return body;
 }
 
@@ -172,21 +173,21 @@ Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const Co
     const BodyKind kind = state_->bodies.traits[body.index].kind;
     if (auto checked = check_collider(kind, shape, def); !checked) return checked.error();
     try {
-        want_awake(*state_, body.index);
+        request_wake(*state_, body.index);
         return make_collider(*state_, body.index, shape, def);
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::add_collider", "no memory for a collider", ""};
+        return Error{Status::NoMemory, "World::add_collider", "out of memory for a collider", ""};
     }
 }
 
 Result<void> World::remove_collider(ColliderId collider) {
     if (!contains(collider)) return stale_id("World::remove_collider");
     const std::uint32_t body = state_->colliders[collider.index].body;
-    want_awake(*state_, body);
+    request_wake(*state_, body);
     unlink_collider(*state_, collider.index);
     drop_collider(*state_, collider.index);
-    renew_mass(*state_, body);
-    renew_boxes(*state_, body);
+    update_mass(*state_, body);
+    update_boxes(*state_, body);
     return {};
 }
 
@@ -201,7 +202,7 @@ Result<void> World::remove_body(BodyId body) {
     const std::span<const std::uint32_t> one(&body.index, 1);
     erase_ascending(state.awake, one);
     state.asleep.remove(one);
-    std::erase(state.wake_wanted, body.index);
+    std::erase(state.bodies_to_wake, body.index);
     state.exclusions.remove_all_of(body.index);
     state.bodies.traits[body.index] = {};
     state.body_ids.remove(body);

@@ -1,4 +1,4 @@
-/// Stage "collide": how the shapes of each pair touch.
+/// Stage "collide": updates the contact manifold of each active pair.
 #include <algorithm>
 
 #include "fase/narrow/dispatch.hpp"
@@ -13,22 +13,22 @@ namespace {
 
 float dot4(Quat a, Quat b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
 
-/// Whether the manifold may stay as it is: the bodies moved less than `distance` against each other since it was made,
-/// and neither turned by more than about two degrees.
+/// Whether the manifold can be reused: since it was computed, the bodies moved less than `distance` relative to each
+/// other, and neither rotated by more than about two degrees.
 bool may_reuse(const Contact& c, const BodyMotion& a, const BodyMotion& b, Vec3 b_from_a, float distance) {
     constexpr float cosine_squared = 0.9997f;  // of half the angle
     const Vec3 moved = rotate_back(a.rotation, b_from_a) - c.b_in_a;
     if (length_squared(moved) > distance * distance) return false;
-    const float turned_a = dot4(a.rotation, c.rotation_a), turned_b = dot4(b.rotation, c.rotation_b);
-    if (!(turned_a * turned_a > cosine_squared && turned_b * turned_b > cosine_squared)) return false;
-    const float between = dot4(conjugate(a.rotation) * b.rotation, conjugate(c.rotation_a) * c.rotation_b);
-    return between * between > cosine_squared;
+    const float cosine_a = dot4(a.rotation, c.rotation_a), cosine_b = dot4(b.rotation, c.rotation_b);
+    if (!(cosine_a * cosine_a > cosine_squared && cosine_b * cosine_b > cosine_squared)) return false;
+    const float relative = dot4(conjugate(a.rotation) * b.rotation, conjugate(c.rotation_a) * c.rotation_b);
+    return relative * relative > cosine_squared;
 }
 
-/// Puts a new manifold (in the frame of collider a) into the contact, and finds for each point the impulse that the
-/// nearest old point carried: features change on flush faces, places do not.
-void take_manifold(Contact& c, const narrow::Manifold& manifold, const LocalPose& collider_a, const BodyMotion& a,
-                   const BodyMotion& b, Vec3 b_from_a, float match_distance) {
+/// Stores a new manifold (in the frame of collider a) in the contact, and gives each point the impulse of the nearest
+/// old point for warm starting. Matching by position is more stable than by feature: features change on flush faces.
+void store_manifold(Contact& c, const narrow::Manifold& manifold, const LocalPose& collider_a, const BodyMotion& a,
+                    const BodyMotion& b, Vec3 b_from_a, float match_distance) {
     const Contact old = c;
     c.count = static_cast<std::uint8_t>(manifold.count);
     c.frozen = manifold.count >= 3;
@@ -45,7 +45,7 @@ void take_manifold(Contact& c, const narrow::Manifold& manifold, const LocalPose
     const Vec3 second = cross(c.normal, c.tangent);
     Vec3 at[4], centre;
     for (int i = 0; i < manifold.count; ++i) {
-        at[i] = transform(collider_a, manifold.points[static_cast<std::size_t>(i)].at);
+        at[i] = transform(collider_a, manifold.points[static_cast<std::size_t>(i)].position);
         centre += at[i];
     }
     centre *= 1.0f / static_cast<float>(manifold.count);
@@ -82,7 +82,7 @@ void take_manifold(Contact& c, const narrow::Manifold& manifold, const LocalPose
     }
 }
 
-/// Brings one contact up to date; true when its manifold was kept.
+/// Updates one contact. Returns true when its manifold was reused.
 bool update_contact(WorldState& state, Contact& c) {
     const Collider& ca = state.colliders[c.collider_a];
     const Collider& cb = state.colliders[c.collider_b];
@@ -91,7 +91,7 @@ bool update_contact(WorldState& state, Contact& c) {
     const BodyMotion& a = state.bodies.motion[c.body_a];
     const BodyMotion& b = state.bodies.motion[c.body_b];
     const Vec3 b_from_a = to_float(b.position - a.position);
-    // The sizes of the smaller shape set the scale; a half-space has none.
+    // The smaller shape sets the scale; a half-space has no size.
     const float radius_a = shape_a.inner_radius > 0 ? shape_a.inner_radius : Aabb::infinity;
     const float radius_b = shape_b.inner_radius > 0 ? shape_b.inner_radius : Aabb::infinity;
     const float scale = std::min(radius_a, radius_b);
@@ -104,7 +104,7 @@ bool update_contact(WorldState& state, Contact& c) {
     const float margin =
         c.sensor ? 0.0f : state.settings.speculative_distance + state.sweep[c.body_a] + state.sweep[c.body_b];
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, b_in_a, margin);
-    take_manifold(c, manifold, pose_a, a, b, b_from_a, std::min(0.05f, 0.2f * scale));
+    store_manifold(c, manifold, pose_a, a, b, b_from_a, std::min(0.05f, 0.2f * scale));
     return false;
 }
 
@@ -114,12 +114,12 @@ void collide(WorldState& state, float) {
     state.reused.assign(state.active.size(), 0);
     parallel_ranges(*state.tasks, state.active.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            state.reused[i] = update_contact(state, state.contacts[state.active.contacts[i]]) ? 1 : 0;
+            state.reused[i] = update_contact(state, state.contacts[state.active.values[i]]) ? 1 : 0;
     });
     state.touching.clear();
     StepReport& report = state.report;
     for (std::size_t i = 0; i < state.active.size(); ++i) {
-        const std::uint32_t index = state.active.contacts[i];
+        const std::uint32_t index = state.active.values[i];
         const Contact& c = state.contacts[index];
         if (c.count == 0) continue;
         ++report.manifolds;

@@ -1,5 +1,5 @@
 #pragma once
-/// What happened in the last step, read after it.
+/// Events of the last step.
 #include <span>
 #include <vector>
 
@@ -7,13 +7,12 @@
 
 namespace fase {
 
-/// Two colliders began or ceased to touch; a is the one with the smaller index. When one of them was removed, its id is
-/// stale.
+/// Two colliders began or stopped touching; a has the smaller index. The id of a collider that was removed is stale.
 struct ContactEvent {
     ColliderId a, b;
     friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
 };
-/// Two colliders met with at least the restitution threshold's speed.
+/// Two colliders hit each other faster than Settings::restitution_threshold.
 struct HitEvent {
     ColliderId a, b;
     Vec3d point;        ///< world, the deepest point of the contact
@@ -21,14 +20,14 @@ struct HitEvent {
     float speed = 0;    ///< m/s of approach, before the hit
     float impulse = 0;  ///< N s along the normal, summed over the contact's points and the step
 };
-/// A body came into a sensor or left it: `visitor` began or ceased to overlap `sensor`.
+/// `visitor` began or stopped overlapping `sensor`.
 struct SensorEvent {
     ColliderId sensor, visitor;
     friend bool operator==(const SensorEvent&, const SensorEvent&) = default;
 };
 
-/// All that happened in one step, each list in the order of the ids, the same for any thread count and structure.
-/// Contacts that end because a body was removed between steps are told by the next step.
+/// All events of one step. Each list is in the order of the ids, the same for any thread count and structure. When a
+/// body is removed between steps, the next step reports the end of its contacts.
 struct Events {
     std::vector<ContactEvent> contacts_begun, contacts_ended;
     std::vector<HitEvent> hits;

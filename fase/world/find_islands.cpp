@@ -1,4 +1,4 @@
-/// Stage "islands": wakes what is touched, and joins bodies that touch.
+/// Stage "islands": wakes bodies that are touched, and unites touching bodies into islands.
 #include <algorithm>
 
 #include "fase/world/detail/state.hpp"
@@ -14,8 +14,8 @@ bool is_moving(const dynamics::BodyMotion& motion) {
     return length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
 }
 
-/// Whether the bodies meet in this step: they touch, or come as fast as their gap is wide.
-bool meets(const WorldState& state, const Contact& c, float seconds) {
+/// Whether the bodies touch in this step: now, or because they close their gap within `seconds`.
+bool will_touch(const WorldState& state, const Contact& c, float seconds) {
     const float gap = c.nearest;
     if (gap <= state.settings.linear_slop) return true;
     const dynamics::BodyMotion& a = state.bodies.motion[c.body_a];
@@ -32,18 +32,18 @@ void find_islands(WorldState& state, float seconds) {
         const Contact& c = state.contacts[index];
         const BodyTraits& a = state.bodies.traits[c.body_a];
         const BodyTraits& b = state.bodies.traits[c.body_b];
-        if (a.motion_state == b.motion_state || !meets(state, c, seconds)) continue;
-        // Only a body that can push wakes: a kinematic one that moves, or a dynamic one.
+        if (a.motion_state == b.motion_state || !will_touch(state, c, seconds)) continue;
+        // Only a body that is not static wakes another: a moving kinematic one, or a dynamic one.
         if (a.kind != BodyKind::Static && b.kind == BodyKind::Dynamic && b.motion_state == MotionState::Asleep)
-            want_awake(state, c.body_b);
+            request_wake(state, c.body_b);
         if (b.kind != BodyKind::Static && a.kind == BodyKind::Dynamic && a.motion_state == MotionState::Asleep)
-            want_awake(state, c.body_a);
+            request_wake(state, c.body_a);
     }
-    if (!state.wake_wanted.empty()) {
-        wake_wanted_islands(state);
-        // The woken bring the contacts they rested on: still true, nothing moved meanwhile.
+    if (!state.bodies_to_wake.empty()) {
+        wake_requested_islands(state);
+        // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
         state.touching.clear();
-        for (const std::uint32_t index : state.active.contacts)
+        for (const std::uint32_t index : state.active.values)
             if (state.contacts[index].count > 0 && !state.contacts[index].sensor) state.touching.push_back(index);
     }
 

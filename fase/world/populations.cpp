@@ -1,4 +1,4 @@
-/// Bodies between awake and asleep: with their boxes, and the pairs they are in.
+/// Changes the motion state of bodies, and moves their boxes and pairs with them.
 #include <algorithm>
 
 #include "fase/geometry/bounds.hpp"
@@ -7,15 +7,6 @@
 namespace fase {
 
 using broad::Pair;
-
-broad::AnyStructure& boxes_of(WorldState& state, MotionState motion_state) {
-    switch (motion_state) {
-        case MotionState::Static: return state.static_boxes;
-        case MotionState::Asleep: return state.asleep_boxes;
-        case MotionState::Awake: break;
-    }
-    return state.awake_boxes;
-}
 
 LocalPose collider_pose(const WorldState& state, const Collider& collider) {
     const Quat body = state.bodies.motion[collider.body].rotation;
@@ -27,22 +18,22 @@ Pose world_pose(const WorldState& state, const Collider& collider) {
     return {state.bodies.motion[collider.body].position + to_double(local.position), local.rotation};
 }
 
-Aabb reaching_box(const WorldState& state, std::uint32_t index, float seconds, float sweep) {
+Aabb speculative_box(const WorldState& state, std::uint32_t index, float seconds, float sweep) {
     const Collider& collider = state.colliders[index];
     const dynamics::BodyMotion& motion = state.bodies.motion[collider.body];
-    Aabb box = grown(bounds(state.shapes[collider.shape].shape, world_pose(state, collider)),
-                     state.settings.speculative_distance);
+    Aabb box = enlarged(bounds(state.shapes[collider.shape].shape, world_pose(state, collider)),
+                        state.settings.speculative_distance);
     if (sweep > 0) {
-        const Vec3 way = motion.linear_velocity * seconds, none;
-        box.lo += min(way, none);
-        box.hi += max(way, none);
+        const Vec3 path = motion.linear_velocity * seconds, zero;
+        box.lo += min(path, zero);
+        box.hi += max(path, zero);
     }
     return box;
 }
 
 namespace {
 
-/// Moves the boxes of a body's colliders from one set to another.
+/// Moves the boxes of the bodies' colliders from one broad-phase structure to another.
 void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, MotionState from, MotionState to) {
     state.query_boxes.clear();
     state.scratch.clear();
@@ -50,10 +41,10 @@ void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, Motion
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
             state.query_boxes.push_back({c, state.boxes[c]});
             state.scratch.push_back(c);
-            note_box(state, c);
+            mark_box_changed(state, c);
         }
-    boxes_of(state, from).erase(state.scratch);
-    boxes_of(state, to).insert(state.query_boxes);
+    state.box_sets.of(from).erase(state.scratch);
+    state.box_sets.of(to).insert(state.query_boxes);
 }
 
 bool is_awake(const WorldState& state, std::uint32_t contact) {
@@ -62,55 +53,24 @@ bool is_awake(const WorldState& state, std::uint32_t contact) {
            state.bodies.traits[c.body_b].motion_state == MotionState::Awake;
 }
 
-/// Takes the pairs for which `goes(place)` holds out of `from` and merges them into `into`; both stay sorted. Two bytes
-/// a pair are read of what stays.
-template <class F> void move_pairs(PairList& from, PairList& into, PairList& moved, const F& goes) {
-    moved.clear();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        if (goes(i)) {
-            moved.add(from.pairs[i], from.contacts[i]);
-        } else {
-            if (kept != i) {
-                from.pairs[kept] = from.pairs[i];
-                from.contacts[kept] = from.contacts[i];
-            }
-            ++kept;
-        }
-    }
-    if (moved.size() == 0) return;
-    from.pairs.resize(kept);
-    from.contacts.resize(kept);
-    // Merged from the back: what comes before the first that moved stays where it is.
-    std::size_t i = into.size(), j = moved.size(), at = i + j;
-    into.pairs.resize(at);
-    into.contacts.resize(at);
-    while (j > 0) {
-        const bool old = i > 0 && moved.pairs[j - 1] < into.pairs[i - 1];
-        const PairList& source = old ? into : moved;
-        const std::size_t place = old ? --i : --j;
-        --at;
-        into.pairs[at] = source.pairs[place];
-        into.contacts[at] = source.contacts[place];
-    }
-}
-
 }  // namespace
 
-void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies) {
+void update_pair_lists(WorldState& state, std::span<const std::uint32_t> bodies) {
     const auto for_each_collider = [&](const auto& f) {
         for (const std::uint32_t body : bodies)
             for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
                 f(state.changes[c]);
     };
-    for_each_collider([](std::uint8_t& change) { change |= crossed; });
-    const auto touched = [&](Pair pair) { return ((state.changes[pair.a] | state.changes[pair.b]) & crossed) != 0; };
-    PairList &active = state.active, &resting = state.resting;
-    move_pairs(resting, active, state.spare_list,
-               [&](std::size_t i) { return touched(resting.pairs[i]) && is_awake(state, resting.contacts[i]); });
-    move_pairs(active, resting, state.spare_list,
-               [&](std::size_t i) { return touched(active.pairs[i]) && !is_awake(state, active.contacts[i]); });
-    for_each_collider([](std::uint8_t& change) { change = static_cast<std::uint8_t>(change & ~crossed); });
+    for_each_collider([](std::uint8_t& change) { change |= state_changed; });
+    const auto is_affected = [&](Pair pair) {
+        return ((state.changes[pair.a] | state.changes[pair.b]) & state_changed) != 0;
+    };
+    pairs::PairList &active = state.active, &resting = state.resting;
+    resting.move_to(active,
+                    [&](std::size_t i) { return is_affected(resting.pairs[i]) && is_awake(state, resting.values[i]); });
+    active.move_to(resting,
+                   [&](std::size_t i) { return is_affected(active.pairs[i]) && !is_awake(state, active.values[i]); });
+    for_each_collider([](std::uint8_t& change) { change = static_cast<std::uint8_t>(change & ~state_changed); });
 }
 
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
@@ -122,7 +82,7 @@ void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
     state.asleep.remove(bodies);
     insert_ascending(state.awake, bodies);
     move_boxes(state, bodies, MotionState::Asleep, MotionState::Awake);
-    sort_out_pairs(state, bodies);
+    update_pair_lists(state, bodies);
 }
 
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
@@ -135,21 +95,21 @@ void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
     erase_ascending(state.awake, bodies);
     state.asleep.add(bodies, state.bodies.motion);
     move_boxes(state, bodies, MotionState::Awake, MotionState::Asleep);
-    note_sleepers(state, bodies);
-    sort_out_pairs(state, bodies);
+    measure_asleep_overhang(state, bodies);
+    update_pair_lists(state, bodies);
 }
 
-void want_awake(WorldState& state, std::uint32_t body) {
+void request_wake(WorldState& state, std::uint32_t body) {
     if (state.bodies.traits[body].motion_state == MotionState::Asleep && !state.bodies.traits[body].quarantined)
-        state.wake_wanted.push_back(body);
+        state.bodies_to_wake.push_back(body);
 }
 
-void wake_wanted_islands(WorldState& state) {
-    if (state.wake_wanted.empty()) return;
+void wake_requested_islands(WorldState& state) {
+    if (state.bodies_to_wake.empty()) return;
     std::vector<std::uint32_t> islands, bodies;
-    for (const std::uint32_t body : state.wake_wanted)
+    for (const std::uint32_t body : state.bodies_to_wake)
         if (state.asleep.holds(body)) islands.push_back(state.asleep.island(body));
-    state.wake_wanted.clear();
+    state.bodies_to_wake.clear();
     std::sort(islands.begin(), islands.end());
     islands.erase(std::unique(islands.begin(), islands.end()), islands.end());
     for (const std::uint32_t island : islands)
@@ -183,11 +143,11 @@ std::uint32_t add_contact(WorldState& state, broad::Pair pair) {
     contact.generation_a = state.collider_ids.slots()[pair.a].generation;
     contact.generation_b = state.collider_ids.slots()[pair.b].generation;
     contact.sensor = a.sensor || b.sensor;
-    renew_materials(state, index);
+    update_materials(state, index);
     return index;
 }
 
-void renew_materials(WorldState& state, std::uint32_t index) {
+void update_materials(WorldState& state, std::uint32_t index) {
     dynamics::Contact& contact = state.contacts[index];
     const Material& a = state.colliders[contact.collider_a].material;
     const Material& b = state.colliders[contact.collider_b].material;

@@ -1,4 +1,4 @@
-/// Stage "events": what began, ended and hit.
+/// Stage "events": collects the contact, sensor and hit events of the step.
 #include <algorithm>
 #include <tuple>
 
@@ -15,14 +15,15 @@ ContactEvent ids_of(const WorldState& state, const Contact& c) {
             {c.collider_b, c.generation_b, state.collider_ids.owner()}};
 }
 
-/// Touching begins at the slop and ends beyond twice the slop, so that a resting contact does not flicker.
+/// Hysteresis: touching begins within the slop and ends beyond twice the slop, so that a resting contact does not
+/// flicker.
 bool touches(const WorldState& state, const Contact& c) {
     if (c.count == 0) return false;
     if (c.sensor) return c.nearest <= 0;
     return c.pushes || c.nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
 }
 
-/// The deepest point, in the world, half-way between the bodies.
+/// Returns the point with the largest impulse, in world space, half-way between the bodies.
 Vec3d deepest_point(const WorldState& state, const Contact& c) {
     int deepest = 0;
     for (int i = 1; i < c.count; ++i)
@@ -39,7 +40,7 @@ template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
 
 void publish_events(WorldState& state) {
     Events& events = state.events;
-    for (const std::uint32_t index : state.active.contacts) {
+    for (const std::uint32_t index : state.active.values) {
         Contact& c = state.contacts[index];
         const bool now = touches(state, c);
         if (now != c.touching) {

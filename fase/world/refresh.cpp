@@ -1,4 +1,4 @@
-/// Stage "refresh": the boxes of awake bodies follow them.
+/// Stage "refresh": updates the fat boxes of awake bodies.
 #include <algorithm>
 
 #include "fase/world/detail/state.hpp"
@@ -6,24 +6,24 @@
 namespace fase {
 
 void refresh_boxes(WorldState& state, float seconds) {
-    wake_wanted_islands(state);
+    wake_requested_islands(state);
     state.sweep.resize(state.bodies.traits.size(), 0);
     state.previous_boxes.resize(state.boxes.size());
     parallel_ranges(*state.tasks, state.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = state.awake[i];
             const dynamics::BodyTraits& traits = state.bodies.traits[body];
-            // A body that moves more than half its inner radius in a step could pass through a thin thing.
-            const float way = length(state.bodies.motion[body].linear_velocity) * seconds;
-            const float sweep = way > 0.5f * traits.inner_radius ? way : 0;
+            // A body that moves more than half its inner radius in a step could tunnel through a thin body.
+            const float path = length(state.bodies.motion[body].linear_velocity) * seconds;
+            const float sweep = path > 0.5f * traits.inner_radius ? path : 0;
             state.sweep[body] = sweep;
             for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
-                const Aabb box = reaching_box(state, c, seconds, sweep);
+                const Aabb box = speculative_box(state, c, seconds, sweep);
                 if (contains(state.boxes[c], box) && !(state.changes[c] & edited)) continue;
                 const Vec3 size = extent(box);
                 const float largest = std::max({size.x, size.y, size.z});
                 state.previous_boxes[c] = state.boxes[c];
-                state.boxes[c] = grown(box, std::min(state.settings.box_margin, 0.25f * largest));
+                state.boxes[c] = enlarged(box, std::min(state.settings.box_margin, 0.25f * largest));
                 state.changes[c] |= moved_box;
             }
         }
@@ -33,7 +33,7 @@ void refresh_boxes(WorldState& state, float seconds) {
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
             if (state.changes[c] & moved_box) {
                 state.moved.push_back(c);
-                note_box(state, c);
+                mark_box_changed(state, c);
             }
     state.report.boxes_moved = static_cast<std::uint32_t>(state.moved.size());
 }

@@ -1,6 +1,7 @@
-/// Changing bodies and pushing them.
+/// World: changing bodies, applying forces and impulses.
 #include <algorithm>
 
+#include "fase/core/detail/text.hpp"
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
@@ -11,7 +12,7 @@ Result<void> check_vector(Vec3 v, const char* where) {
     if (is_finite(v)) return {};
     return refused(where, "a number that is not finite", "three finite numbers");
 }
-/// Whether the speed can be squared: beyond 1e19 nothing can be meant.
+/// Whether the square of the speed is finite, which holds below about 1e19 m/s.
 bool is_speed(Vec3 v) { return std::isfinite(length_squared(v)); }
 Error not_dynamic(const char* where) {
     return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
@@ -41,18 +42,18 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
         boxes.push_back({c, state.boxes[c]});
         proxies.push_back(c);
     }
-    boxes_of(state, traits.motion_state).erase(proxies);
+    state.box_sets.of(traits.motion_state).erase(proxies);
     const std::span<const std::uint32_t> one(&body, 1);
     erase_ascending(state.awake, one);
     state.asleep.remove(one);
     traits.motion_state = now;
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
-    boxes_of(state, now).insert(boxes);
+    state.box_sets.of(now).insert(boxes);
     if (now == MotionState::Awake) insert_ascending(state.awake, one);
     if (now == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
-    sort_out_pairs(state, one);
-    renew_boxes(state, body);
+    update_pair_lists(state, one);
+    update_boxes(state, body);
 }
 
 Result<void> World::set_settings(const Settings& settings) {
@@ -60,21 +61,21 @@ Result<void> World::set_settings(const Settings& settings) {
     const bool sleep_ended = state_->settings.sleep && !settings.sleep;
     state_->settings = settings;
     if (sleep_ended)
-        for (const std::uint32_t body : state_->asleep.bodies) want_awake(*state_, body);
+        for (const std::uint32_t body : state_->asleep.bodies) request_wake(*state_, body);
     return {};
 }
 
 Result<void> World::set_pose(BodyId body, const Pose& pose) {
     if (!contains(body)) return stale_id("World::set_pose");
     if (auto checked = check_position(pose.position, "World::set_pose: position"); !checked) return checked;
-    const auto rotation = usable(pose.rotation, "World::set_pose: rotation");
+    const auto rotation = check_rotation(pose.rotation, "World::set_pose: rotation");
     if (!rotation) return rotation.error();
     dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     const Pose placed = Pose{pose.position, *rotation} * state_->bodies.traits[body.index].principal;
     motion.position = placed.position;
     motion.rotation = normalized(placed.rotation);
-    renew_boxes(*state_, body.index);
-    want_awake(*state_, body.index);
+    update_boxes(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -86,12 +87,12 @@ Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
     if (traits.kind == BodyKind::Static)
         return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
     if (!is_speed(linear) || !is_speed(angular))
-        return refused("World::set_velocity", "a speed above 1e19", "one that a body can have");
+        return refused("World::set_velocity", "a speed above 1e19", "a smaller speed");
     dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     motion.linear_velocity = linear;
     motion.angular_velocity = angular;
     motion.sleep_time = 0;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -100,16 +101,16 @@ Result<void> World::move_kinematic(BodyId body, const Pose& target, float second
     if (state_->bodies.traits[body.index].kind != BodyKind::Kinematic)
         return refused("World::move_kinematic", "a body that is not kinematic", "a kinematic one");
     if (!(seconds > 0 && seconds <= 1))
-        return refused("World::move_kinematic: seconds", std::to_string(seconds), "above 0, at most 1");
+        return refused("World::move_kinematic: seconds", detail::text_of(seconds), "above 0, at most 1");
     if (auto checked = check_position(target.position, "World::move_kinematic: position"); !checked) return checked;
-    const auto rotation = usable(target.rotation, "World::move_kinematic: rotation");
+    const auto rotation = check_rotation(target.rotation, "World::move_kinematic: rotation");
     if (!rotation) return rotation.error();
     const dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
     const Pose placed = Pose{target.position, *rotation} * state_->bodies.traits[body.index].principal;
     Quat turn = normalized(placed.rotation * conjugate(motion.rotation));
     if (turn.w < 0) turn = {-turn.x, -turn.y, -turn.z, -turn.w};
-    // The turn q = (axis sin(a/2), cos(a/2)) needs the speed a / seconds; atan(s) = a / 2 by its series in s = tan,
-    // halved until small.
+    // The rotation q = (axis sin(a/2), cos(a/2)) needs the angular speed a / seconds. a / 2 = atan(tan(a/2)) is
+    // computed by the series of atan, after halving the angle until it is small.
     const float sine = length(turn.vector());
     float angle = 0;
     if (sine > 0) {
@@ -129,7 +130,7 @@ Result<void> World::move_kinematic(BodyId body, const Pose& target, float second
 
 Result<void> World::set_kind(BodyId body, BodyKind kind) {
     if (!contains(body)) return stale_id("World::set_kind");
-    if (kind > BodyKind::Dynamic) return refused("World::set_kind", "a number that names no kind", "a BodyKind");
+    if (kind > BodyKind::Dynamic) return refused("World::set_kind", "an unknown kind", "a BodyKind");
     WorldState& state = *state_;
     dynamics::BodyTraits& traits = state.bodies.traits[body.index];
     if (kind == BodyKind::Dynamic)
@@ -143,9 +144,9 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
         state.bodies.motion[body.index].linear_velocity = {};
         state.bodies.motion[body.index].angular_velocity = {};
     }
-    renew_mass(state, body.index);
+    update_mass(state, body.index);
     update_motion_state(state, body.index);
-    renew_boxes(state, body.index);
+    update_boxes(state, body.index);
     return {};
 }
 
@@ -161,9 +162,10 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
     traits.mass_given = mass.has_value();
     if (mass) traits.mass = *mass;
     const LocalPose frame_before = traits.principal;
-    renew_mass(*state_, body.index);
-    if (!(frame_before == traits.principal)) renew_boxes(*state_, body.index);  // moved, if by roundings only
-    want_awake(*state_, body.index);
+    update_mass(*state_, body.index);
+    if (!(frame_before == traits.principal))
+        update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -180,28 +182,28 @@ Result<void> World::set_gravity_scale(BodyId body, float scale) {
     if (!contains(body)) return stale_id("World::set_gravity_scale");
     if (auto r = check_number(scale, -Aabb::infinity, "World::set_gravity_scale"); !r) return r;
     state_->bodies.traits[body.index].gravity_scale = scale;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
 Result<void> World::set_locks(BodyId body, AxisLocks locks) {
     if (!contains(body)) return stale_id("World::set_locks");
     state_->bodies.traits[body.index].locks = bits_of(locks);
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
 Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
     if (!contains(body)) return stale_id("World::set_can_sleep");
     state_->bodies.traits[body.index].can_sleep = can_sleep;
-    if (!can_sleep) want_awake(*state_, body.index);
+    if (!can_sleep) request_wake(*state_, body.index);
     return {};
 }
 
 Result<void> World::wake(BodyId body) {
     if (!contains(body)) return stale_id("World::wake");
     state_->bodies.motion[body.index].sleep_time = 0;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -209,22 +211,22 @@ Result<void> World::set_material(ColliderId collider, const Material& material) 
     if (!contains(collider)) return stale_id("World::set_material");
     if (auto checked = check(material); !checked) return checked;
     state_->colliders[collider.index].material = material;
-    const auto renew = [&](PairList& list) {
+    const auto renew = [&](pairs::PairList& list) {
         for (std::size_t i = 0; i < list.size(); ++i)
             if (list.pairs[i].a == collider.index || list.pairs[i].b == collider.index)
-                renew_materials(*state_, list.contacts[i]);
+                update_materials(*state_, list.values[i]);
     };
     renew(state_->active);
     renew(state_->resting);
-    want_awake(*state_, state_->colliders[collider.index].body);
+    request_wake(*state_, state_->colliders[collider.index].body);
     return {};
 }
 
 Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter& filter) {
     if (!contains(collider)) return stale_id("World::set_filter");
     state_->colliders[collider.index].filter = filter;
-    renew_box(*state_, collider.index);
-    want_awake(*state_, state_->colliders[collider.index].body);
+    update_box(*state_, collider.index);
+    request_wake(*state_, state_->colliders[collider.index].body);
     return {};
 }
 
@@ -232,18 +234,18 @@ Result<void> World::exclude_pair(BodyId a, BodyId b) {
     if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
     if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
     if (!state_->exclusions.add(a.index, b.index)) return {};
-    renew_boxes(*state_, a.index);
-    want_awake(*state_, a.index);
-    want_awake(*state_, b.index);
+    update_boxes(*state_, a.index);
+    request_wake(*state_, a.index);
+    request_wake(*state_, b.index);
     return {};
 }
 
 Result<void> World::include_pair(BodyId a, BodyId b) {
     if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
     if (!state_->exclusions.remove(a.index, b.index)) return {};
-    renew_boxes(*state_, a.index);
-    want_awake(*state_, a.index);
-    want_awake(*state_, b.index);
+    update_boxes(*state_, a.index);
+    request_wake(*state_, a.index);
+    request_wake(*state_, b.index);
     return {};
 }
 
@@ -260,7 +262,7 @@ Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
     const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
     state_->bodies.forces[body.index].force += newtons;
     state_->bodies.forces[body.index].torque += cross(arm, newtons);
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -269,7 +271,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
     if (auto checked = check_vector(newton_metres, "World::apply_torque"); !checked) return checked;
     if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
     state_->bodies.forces[body.index].torque += newton_metres;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -294,7 +296,7 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
     motion.linear_velocity = linear;
     motion.angular_velocity = angular;
     motion.sleep_time = 0;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 
@@ -309,7 +311,7 @@ Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds
         return refused("World::apply_angular_impulse", "an impulse that makes the velocity infinite", "a smaller one");
     motion.angular_velocity = angular;
     motion.sleep_time = 0;
-    want_awake(*state_, body.index);
+    request_wake(*state_, body.index);
     return {};
 }
 

@@ -1,13 +1,14 @@
-/// Which settings can be meant.
+/// Range checks of the settings.
 #include "fase/world/settings.hpp"
+#include "fase/core/detail/text.hpp"
 
 #include <cmath>
 
 namespace fase {
 namespace {
 
-Error refused(const char* field, const std::string& found, const std::string& need) {
-    return {Status::BadArgument, std::string("Settings.") + field, "found " + found + ", need " + need, ""};
+Error refused(const char* field, const std::string& found, const std::string& expected) {
+    return {Status::BadArgument, std::string("Settings.") + field, "found " + found + "; expected " + expected, ""};
 }
 
 }  // namespace
@@ -15,12 +16,12 @@ Error refused(const char* field, const std::string& found, const std::string& ne
 Result<void> check(const Settings& s) {
     if (!is_finite(s.gravity)) return refused("gravity", "a number that is not finite", "three finite numbers");
     if (!(s.time_step > 0 && s.time_step <= 1))
-        return refused("time_step", std::to_string(s.time_step), "above 0, at most 1");
+        return refused("time_step", detail::text_of(s.time_step), "above 0, at most 1");
     if (s.sub_steps < 1 || s.sub_steps > 64) return refused("sub_steps", std::to_string(s.sub_steps), "1 to 64");
-    if (s.max_pairs < 0) return refused("most_pairs", std::to_string(s.max_pairs), "0 or more");
+    if (s.max_pairs < 0) return refused("max_pairs", std::to_string(s.max_pairs), "0 or more");
     const struct {
         const char* field;
-        float value, least, most;
+        float value, min, max;
     } ranges[] = {
         {"contact_frequency", s.contact_frequency, 0.01f, 1e6f},
         {"contact_damping_ratio", s.contact_damping_ratio, 0.0f, 1e6f},
@@ -35,13 +36,13 @@ Result<void> check(const Settings& s) {
         {"sleep_distance", s.sleep_distance, 0.0f, 1e3f},
         {"sleep_tolerance", s.sleep_tolerance, 0.0f, 1.0f},
         {"time_to_sleep", s.time_to_sleep, 0.0f, 1e6f},
-        {"most_linear_speed", s.max_linear_speed, 1e-3f, 1e6f},
-        {"most_angular_speed", s.max_angular_speed, 1e-3f, 1e5f},
+        {"max_linear_speed", s.max_linear_speed, 1e-3f, 1e6f},
+        {"max_angular_speed", s.max_angular_speed, 1e-3f, 1e5f},
     };
     for (const auto& range : ranges)
-        if (!(range.value >= range.least && range.value <= range.most))
-            return refused(range.field, std::to_string(range.value),
-                           std::to_string(range.least) + " to " + std::to_string(range.most));
+        if (!(range.value >= range.min && range.value <= range.max))
+            return refused(range.field, detail::text_of(range.value),
+                           detail::text_of(range.min) + " to " + detail::text_of(range.max));
     return {};
 }
 

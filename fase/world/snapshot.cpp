@@ -1,4 +1,4 @@
-/// Snapshots and hashes, both made from one description of the state.
+/// Snapshots and hashes, both generated from one description of the state.
 #include <bit>
 #include <cstring>
 #include <new>
@@ -43,7 +43,8 @@ struct WriteArchive {
         number(size);
     }
 };
-/// Reads what WriteArchive wrote; past the end or on a count that the bytes cannot hold, it fails and stays failed.
+/// Reads what WriteArchive wrote. A read past the end, or a count larger than the rest of the bytes, sets `failed`;
+/// later reads then do nothing.
 struct ReadArchive {
     static constexpr bool reads = true;
     std::span<const std::byte> bytes;
@@ -71,7 +72,7 @@ struct ReadArchive {
     template <class T> void resize(std::vector<T>& v) {
         std::uint64_t size = 0;
         number(size);
-        if (failed || size > bytes.size() - at) {  // every element takes a byte at the least
+        if (failed || size > bytes.size() - at) {  // every element takes at least one byte
             failed = true;
             return;
         }
@@ -139,12 +140,10 @@ template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
 }
 template <class A> void describe(A& a, ConvexHull::Edge& e) { all(a, e.from, e.to, e.face_a, e.face_b); }
-template <class A> void describe(A& a, Sphere& s) { a.number(s.radius); }
-template <class A> void describe(A& a, Box& s) { describe(a, s.half); }
-template <class A> void describe(A& a, Capsule& s) { all(a, s.radius, s.half_length); }
-template <class A> void describe(A& a, Cylinder& s) { all(a, s.radius, s.half_height); }
+template <class A, SizedShape S> void describe(A& a, S& shape) {
+    for (const ShapeSize<S>& size : S::sizes) a.number(size.in(shape));
+}
 template <class A> void describe(A& a, ConvexHull& s) { all(a, s.vertices, s.faces, s.face_vertices, s.edges); }
-template <class A> void describe(A&, HalfSpace&) {}
 
 template <class A> void describe(A& a, SharedShape& s) {
     std::uint32_t kind = static_cast<std::uint32_t>(s.shape.index());
@@ -181,12 +180,12 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
     }
 }
 
-/// The one list of what a world's state is.
+/// The one list of all state of a world that is hashed and saved.
 template <class A> void describe(A& a, WorldState& s) {
     all(a, s.settings, s.steps, s.time, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces, s.collider_ids,
         s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep.bodies, s.active.pairs,
-        s.active.contacts, s.resting.pairs, s.resting.contacts, s.contacts, s.free_contacts, s.edited_colliders,
-        s.wake_wanted, s.removed_any, s.ask_all);
+        s.active.values, s.resting.pairs, s.resting.values, s.contacts, s.free_contacts, s.edited_colliders,
+        s.bodies_to_wake, s.removed_any, s.query_all_awake);
     std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
@@ -195,7 +194,7 @@ template <class A> void describe(A& a, WorldState& s) {
     }
 }
 
-/// Whether every index points at something: bytes may come from anywhere.
+/// Whether all indices and lists are valid: the bytes may come from any source.
 bool is_consistent(const WorldState& s) {
     const std::size_t bodies = s.body_ids.size(), colliders = s.collider_ids.size();
     if (s.bodies.traits.size() != bodies || s.bodies.motion.size() != bodies || s.bodies.forces.size() != bodies ||
@@ -222,13 +221,12 @@ bool is_consistent(const WorldState& s) {
         if (s.collider_ids.alive_at(c) && (s.colliders[c].shape >= s.shapes.size() || chained[c] != 1)) return false;
     for (const SharedShape& shared : s.shapes)
         if (shared.users != 0 && !check(shared.shape)) return false;
-    for (const PairList* list : {&s.active, &s.resting}) {
-        if (list->pairs.size() != list->contacts.size()) return false;
+    for (const pairs::PairList* list : {&s.active, &s.resting}) {
+        if (list->pairs.size() != list->values.size()) return false;
         for (std::size_t i = 0; i < list->size(); ++i) {
-            if (list->pairs[i].a >= colliders || list->pairs[i].b >= colliders ||
-                list->contacts[i] >= s.contacts.size())
+            if (list->pairs[i].a >= colliders || list->pairs[i].b >= colliders || list->values[i] >= s.contacts.size())
                 return false;
-            const Contact& c = s.contacts[list->contacts[i]];
+            const Contact& c = s.contacts[list->values[i]];
             if (c.collider_a != list->pairs[i].a || c.collider_b != list->pairs[i].b || c.body_a >= bodies ||
                 c.body_b >= bodies || c.count > 4)
                 return false;
@@ -240,13 +238,14 @@ bool is_consistent(const WorldState& s) {
         return true;
     };
     return all_below(s.free_shapes, s.shapes.size()) && all_below(s.free_contacts, s.contacts.size()) &&
-           all_below(s.edited_colliders, colliders) && all_below(s.wake_wanted, bodies) &&
+           all_below(s.edited_colliders, colliders) && all_below(s.bodies_to_wake, bodies) &&
            all_below(s.body_ids.free_list(), bodies) && all_below(s.collider_ids.free_list(), colliders);
 }
 
-Error not_a_snapshot(std::size_t at, std::string found, std::string need) {
-    return {Status::Format, "snapshot:" + std::to_string(at), "found " + std::move(found) + ", need " + std::move(need),
-            "give the bytes that snapshot() of this version returned"};
+Error not_a_snapshot(std::size_t at, std::string found, std::string expected) {
+    return {Status::Format, "snapshot:" + std::to_string(at),
+            "found " + std::move(found) + "; expected " + std::move(expected),
+            "pass the bytes that snapshot() of this version returned"};
 }
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
@@ -287,13 +286,13 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
     head.number(size);
     head.number(sum);
     if (head.failed || std::memcmp(magic, snapshot_magic, sizeof magic) != 0)
-        return not_a_snapshot(0, "other bytes", "a snapshot, which begins with FASESNAP");
+        return not_a_snapshot(0, "other bytes", "a snapshot that begins with FASESNAP");
     if (version != snapshot_version)
         return not_a_snapshot(8, "version " + std::to_string(version), "version " + std::to_string(snapshot_version));
     const std::span<const std::byte> payload = snapshot.subspan(head.at);
     if (payload.size() != size)
         return not_a_snapshot(12, std::to_string(payload.size()) + " bytes of state", std::to_string(size));
-    if (checksum(payload) != sum) return not_a_snapshot(20, "bytes that do not fit their checksum", "them unchanged");
+    if (checksum(payload) != sum) return not_a_snapshot(20, "a wrong checksum", "unchanged bytes");
     try {
         auto next = std::make_unique<WorldState>();
         next->body_ids = IdPool<BodyTag>(state_->body_ids.owner());
@@ -301,31 +300,26 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
         ReadArchive archive{payload};
         describe(archive, *next);
         if (archive.failed || archive.at != payload.size() || !check(next->settings) || !is_consistent(*next))
-            return not_a_snapshot(28 + archive.at, "a state that contradicts itself", "one that holds together");
+            return not_a_snapshot(28 + archive.at, "an inconsistent state", "a consistent one");
         next->own_tasks = std::move(state_->own_tasks);
         next->tasks = state_->tasks;
         next->solver.reference = state_->solver.reference;
-        next->picks_structures = state_->picks_structures;
-        next->static_boxes = std::move(state_->static_boxes);
-        next->asleep_boxes = std::move(state_->asleep_boxes);
-        next->awake_boxes = std::move(state_->awake_boxes);
-        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
-            boxes->clear();
+        next->box_sets = std::move(state_->box_sets);
+        next->box_sets.clear();
         for (std::uint32_t c = 0; c < next->collider_ids.size(); ++c) {
             if (!next->collider_ids.alive_at(c)) continue;
             const broad::Move move{c, next->boxes[c]};
-            boxes_of(*next, next->bodies.traits[next->colliders[c].body].motion_state).insert(std::span(&move, 1));
+            next->box_sets.of(next->bodies.traits[next->colliders[c].body].motion_state).insert(std::span(&move, 1));
         }
-        for (broad::AnyStructure* boxes : {&next->static_boxes, &next->asleep_boxes, &next->awake_boxes})
-            boxes->commit();
+        next->box_sets.commit_as_they_are();
         next->asleep.relink(next->bodies.motion);
-        note_sleepers(*next, next->asleep.bodies);
+        measure_asleep_overhang(*next, next->asleep.bodies);
         for (std::uint32_t i = 0; i < next->shapes.size(); ++i)
             if (next->shapes[i].users != 0) next->shape_of_key.emplace(next->shapes[i].key, i);
         state_ = std::move(next);
         return {};
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::restore", "no memory for the snapshot's world", ""};
+        return Error{Status::NoMemory, "World::restore", "out of memory for the snapshot", ""};
     }
 }
 

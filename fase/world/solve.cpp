@@ -1,4 +1,4 @@
-/// Stages "solve" and "finish": the solver moves the awake bodies, and their new state is taken over.
+/// Stages "solve" and "finish": runs the solver on the awake bodies, then stores their new motion.
 #include "fase/world/detail/state.hpp"
 
 namespace fase {
@@ -19,14 +19,14 @@ dynamics::SolverSettings solver_settings(const Settings& settings, float seconds
             {settings.max_linear_speed, settings.max_angular_speed}};
 }
 
-bool is_good(const BodyMotion& motion) {
-    constexpr double farthest = 1e8;
+bool is_valid(const BodyMotion& motion) {
+    constexpr double limit = 1e8;
     const Vec3d p = motion.position;
     return is_finite(motion.linear_velocity) && is_finite(motion.angular_velocity) && is_finite(motion.rotation) &&
-           p.x > -farthest && p.x < farthest && p.y > -farthest && p.y < farthest && p.z > -farthest && p.z < farthest;
+           p.x > -limit && p.x < limit && p.y > -limit && p.y < limit && p.z > -limit && p.z < limit;
 }
 
-/// Takes a body out of play, at its last good place.
+/// Stops a body at its last valid pose and excludes it from the simulation.
 void quarantine(WorldState& state, std::uint32_t body) {
     state.bodies.traits[body].quarantined = true;
     state.bodies.motion[body].linear_velocity = {};
@@ -39,20 +39,22 @@ void quarantine(WorldState& state, std::uint32_t body) {
     ++state.report.quarantined;
 }
 
-/// A force that makes a body's velocity infinite must not reach its neighbours: such bodies leave before the solve.
-void quarantine_bad_input(WorldState& state, float seconds) {
-    std::vector<std::uint32_t> bad;
+/// Quarantines bodies whose forces would make their velocity infinite, before the solver spreads it to their
+/// neighbours.
+void quarantine_invalid_forces(WorldState& state, float seconds) {
+    std::vector<std::uint32_t> invalid;
     for (const std::uint32_t body : state.awake) {
         const BodyTraits& traits = state.bodies.traits[body];
         const dynamics::BodyForces& forces = state.bodies.forces[body];
         const BodyMotion& motion = state.bodies.motion[body];
         const Vec3 next = motion.linear_velocity + forces.force * (traits.inverse_mass * seconds);
-        const float hardest = std::max({traits.inverse_moments.x, traits.inverse_moments.y, traits.inverse_moments.z});
-        const Vec3 spin = motion.angular_velocity + forces.torque * (hardest * seconds);
-        if (!std::isfinite(length_squared(next)) || !std::isfinite(length_squared(spin))) bad.push_back(body);
+        const float max_inverse_moment =
+            std::max({traits.inverse_moments.x, traits.inverse_moments.y, traits.inverse_moments.z});
+        const Vec3 spin = motion.angular_velocity + forces.torque * (max_inverse_moment * seconds);
+        if (!std::isfinite(length_squared(next)) || !std::isfinite(length_squared(spin))) invalid.push_back(body);
     }
-    if (bad.empty()) return;
-    for (const std::uint32_t body : bad) {
+    if (invalid.empty()) return;
+    for (const std::uint32_t body : invalid) {
         state.bodies.forces[body] = {};
         quarantine(state, body);
     }
@@ -60,14 +62,14 @@ void quarantine_bad_input(WorldState& state, float seconds) {
         const dynamics::Contact& c = state.contacts[index];
         return state.bodies.traits[c.body_a].quarantined || state.bodies.traits[c.body_b].quarantined;
     });
-    move_to_asleep(state, bad);
+    move_to_asleep(state, invalid);
 }
 
 }  // namespace
 
 void solve(WorldState& state, float seconds) {
-    quarantine_bad_input(state, seconds);
-    // Between an awake body and a sleeping one that it does not meet nothing acts, nor between two that nothing moves.
+    quarantine_invalid_forces(state, seconds);
+    // Drop contacts without an awake dynamic body: the solver cannot move either side.
     std::erase_if(state.touching, [&](std::uint32_t index) {
         const dynamics::Contact& c = state.contacts[index];
         const auto moves = [&](std::uint32_t body) {
@@ -90,7 +92,7 @@ void solve(WorldState& state, float seconds) {
 void finish(WorldState& state, float seconds) {
     const float linear = state.settings.sleep_linear_speed, angular = state.settings.sleep_angular_speed;
     const float distance = state.settings.sleep_distance;
-    state.reused.assign(state.awake.size(), 0);  // marks bodies that went bad
+    state.reused.assign(state.awake.size(), 0);  // reused as flags of bodies with invalid motion
     parallel_ranges(*state.tasks, state.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = state.awake[i];
@@ -103,21 +105,21 @@ void finish(WorldState& state, float seconds) {
             next.linear_velocity = {row.velocity[0], row.velocity[1], row.velocity[2]};
             next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};
             state.bodies.forces[body] = {};
-            if (!is_good(next)) {
+            if (!is_valid(next)) {
                 state.reused[i] = 1;
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
-            next.turn +=
-                turned.vector() * 2.0f;  // what it did, not what its speed says: overlap is undone beside the speed
-            // Slow but steady is no rest; a tremble about one place is.
+            // Use the actual displacement, not the velocity: push-out moves bodies without changing their velocity.
+            next.turn += turned.vector() * 2.0f;
+            // A slow, steady motion is not rest; vibration about one place is.
             const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
                               length_squared(next.angular_velocity) < angular * angular;
             const bool still = length_squared(next.linear_velocity) == 0 && length_squared(next.angular_velocity) == 0;
             const bool rests = traits.kind == BodyKind::Dynamic ? slow && stays && traits.can_sleep : still;
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
-            // The distance counts within each span of the time to sleep, not from the first rest on.
+            // The net motion is measured within each span of time_to_sleep, not since the body came to rest.
             const float span = state.settings.time_to_sleep;
             const bool spans_end =
                 span > 0 && std::floor(next.sleep_time / span) > std::floor((next.sleep_time - seconds) / span);
@@ -125,11 +127,11 @@ void finish(WorldState& state, float seconds) {
             state.bodies.motion[body] = next;
         }
     });
-    std::vector<std::uint32_t> bad;
+    std::vector<std::uint32_t> invalid;
     for (std::size_t i = 0; i < state.awake.size(); ++i)
-        if (state.reused[i] != 0) bad.push_back(state.awake[i]);
-    for (const std::uint32_t body : bad) quarantine(state, body);
-    move_to_asleep(state, bad);
+        if (state.reused[i] != 0) invalid.push_back(state.awake[i]);
+    for (const std::uint32_t body : invalid) quarantine(state, body);
+    move_to_asleep(state, invalid);
 }
 
 }  // namespace fase

@@ -1,7 +1,6 @@
 /// One step, on one screen.
 #include <chrono>
 
-#include "fase/broad/auto_structure.hpp"
 #include "fase/core/detail/float_mode.hpp"
 #include "fase/world/detail/state.hpp"
 
@@ -19,12 +18,11 @@ template <class F> void timed(WorldState& state, Stage stage, const F& work) {
 
 std::uint64_t bytes_held(const WorldState& s) {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    std::uint64_t trees = of(s.query.place) + of(s.query.noted);
+    std::uint64_t trees = of(s.query.tree_of) + of(s.query.pending);
     for (const broad::WideBvh& tree : s.query.trees) trees += tree.bytes();
     return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
-           of(s.contacts) + of(s.active.pairs) + of(s.active.contacts) + of(s.resting.pairs) + of(s.resting.contacts) +
-           of(s.candidates) + of(s.query_boxes) + of(s.previous_boxes) + s.static_boxes.bytes() +
-           s.asleep_boxes.bytes() + s.awake_boxes.bytes() + s.asleep.bytes() + s.solver.bytes();
+           of(s.contacts) + s.active.bytes() + s.resting.bytes() + of(s.candidates) + of(s.query_boxes) +
+           of(s.previous_boxes) + s.box_sets.bytes() + s.asleep.bytes() + s.solver.bytes();
 }
 
 }  // namespace
@@ -55,8 +53,9 @@ void step(WorldState& state, float seconds) {
     state.report.awake = static_cast<std::uint32_t>(state.awake.size());
     state.report.asleep = static_cast<std::uint32_t>(state.asleep.bodies.size());
     state.report.pairs = static_cast<std::uint32_t>(state.active.size());
-    state.report.structure = state.awake_boxes.info().name;
-    if (state.picks_structures) state.report.reason = broad::reason_for(state.report.structure);
+    const broad::StructureChoice choice = state.box_sets.chosen(MotionState::Awake);
+    state.report.structure = choice.structure;
+    state.report.reason = choice.reason;
     state.report.bytes = bytes_held(state);
 }
 

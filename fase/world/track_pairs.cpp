@@ -1,7 +1,6 @@
-/// Stage "pairs": which grown boxes overlap, and what began and ended with it.
+/// Stage "pairs": finds pairs whose fat boxes began to overlap, and ends those whose boxes parted.
 #include <algorithm>
 
-#include "fase/broad/auto_structure.hpp"
 #include "fase/world/detail/state.hpp"
 
 namespace fase {
@@ -18,8 +17,8 @@ bool is_current(const WorldState& state, const dynamics::Contact& c) {
     return same_collider(state, c.collider_a, c.generation_a) && same_collider(state, c.collider_b, c.generation_b);
 }
 
-/// Whether two colliders are to be told of each other at all.
-bool wanted(const WorldState& state, Pair pair) {
+/// Whether two colliders may make a contact: by kinds, sensors, filters and exclusions.
+bool may_make_contact(const WorldState& state, Pair pair) {
     const Collider& a = state.colliders[pair.a];
     const Collider& b = state.colliders[pair.b];
     if (a.body == b.body || (a.sensor && b.sensor)) return false;
@@ -51,25 +50,25 @@ void end_contact(WorldState& state, std::uint32_t index) {
     state.free_contacts.push_back(index);
 }
 
-/// What rested on something that was removed, moved or changed must not stay asleep.
+/// Wakes the bodies that rest on a collider that was removed, moved or changed.
 void wake_around_edits(WorldState& state) {
     for (std::size_t i = 0; i < state.resting.size(); ++i) {
         const Pair pair = state.resting.pairs[i];
         if (!((state.changes[pair.a] | state.changes[pair.b]) & edited)) continue;
-        const dynamics::Contact& c = state.contacts[state.resting.contacts[i]];
+        const dynamics::Contact& c = state.contacts[state.resting.values[i]];
         if (c.sensor || c.count == 0) continue;
         for (const auto& [collider, generation, body] :
              {std::tuple{c.collider_a, c.generation_a, c.body_a}, std::tuple{c.collider_b, c.generation_b, c.body_b}})
-            if (same_collider(state, collider, generation)) want_awake(state, body);
+            if (same_collider(state, collider, generation)) request_wake(state, body);
     }
-    wake_wanted_islands(state);
-    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes}) boxes->commit();
+    wake_requested_islands(state);
+    for (const MotionState changed : {MotionState::Awake, MotionState::Asleep}) state.box_sets.of(changed).commit();
 }
 
-/// All colliders that ask: those that moved, and those that the user made or changed.
+/// Collects the boxes that may have new pairs: of colliders that left their fat box, or that the user added or changed.
 void gather_queries(WorldState& state) {
     state.query_boxes.clear();
-    if (state.ask_all) {
+    if (state.query_all_awake) {
         for (const std::uint32_t body : state.awake)
             for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
                 if (!(state.changes[c] & (moved_box | edited))) {
@@ -89,18 +88,17 @@ void gather_queries(WorldState& state) {
                             state.query_boxes.end());
 }
 
-void ask(WorldState& state, std::span<const broad::Move> query_boxes) {
-    for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes})
-        if (boxes->size() != 0) boxes->find_pairs_of(*state.tasks, query_boxes, state.changes, state.candidates);
+void query(WorldState& state, std::span<const broad::Move> query_boxes) {
+    state.box_sets.find_pairs_of(*state.tasks, query_boxes, state.changes, state.candidates);
 }
 
-/// Whether all askers together may well find more pairs than are wanted, judged by a sample of them.
+/// Estimates from a sample of the query boxes whether all of them may find more pairs than the limit.
 bool looks_crowded(WorldState& state, std::size_t limit) {
     constexpr std::size_t sample = 64;
     if (state.query_boxes.size() <= sample) return false;
     const std::size_t stride = state.query_boxes.size() / sample;
     for (std::size_t i = 0; i < sample; ++i) {
-        ask(state, std::span<const broad::Move>(state.query_boxes).subspan(i * stride, 1));
+        query(state, std::span<const broad::Move>(state.query_boxes).subspan(i * stride, 1));
         if (state.candidates.size() > limit) break;
     }
     const bool crowded = state.candidates.size() * stride > limit / 4;
@@ -108,123 +106,86 @@ bool looks_crowded(WorldState& state, std::size_t limit) {
     return crowded;
 }
 
-/// Whether the boxes overlapped before this step already: then the pair is in a list, or not wanted. Says no of what
-/// the user touched.
-bool was_there(const WorldState& state, Pair pair) {
+/// Whether the boxes already overlapped before this step: then the pair is in a list, or may make no contact. False for
+/// colliders that the user edited.
+bool overlapped_before(const WorldState& state, Pair pair) {
     const auto before = [&](std::uint32_t c) -> const Aabb& {
         return state.changes[c] & moved_box ? state.previous_boxes[c] : state.boxes[c];
     };
     return !((state.changes[pair.a] | state.changes[pair.b]) & edited) && overlaps(before(pair.a), before(pair.b));
 }
 
-/// Pairs of the askers in all three sets that are not in a list yet (and some that are: of what the user touched),
-/// sorted, each once. A crowd asks in portions and stops when the limit is
-/// reached: those with the largest numbers go without.
+/// Finds pairs of the query boxes in all three sets that are not in a list yet (pairs of edited colliders may be),
+/// sorted, each once. Crowded boxes are queried in portions that stop when the limit is reached: pairs of the largest
+/// indices are dropped.
 void find_candidates(WorldState& state) {
     state.candidates.clear();
     const auto limit = static_cast<std::size_t>(state.settings.max_pairs);
-    const bool all_anew = state.ask_all;
-    state.ask_all = false;
+    const bool all_new = state.query_all_awake;
+    state.query_all_awake = false;
     const std::size_t portion = limit != 0 && looks_crowded(state, limit) ? 64 : state.query_boxes.size();
     for (std::size_t begin = 0; begin < state.query_boxes.size(); begin += portion) {
         if (limit != 0 && state.candidates.size() > limit) {
-            state.ask_all = true;
+            state.query_all_awake = true;
             state.report.pairs_dropped += static_cast<std::uint32_t>(state.query_boxes.size() - begin);
             break;
         }
-        ask(state, std::span<const broad::Move>(state.query_boxes)
-                       .subspan(begin, std::min(portion, state.query_boxes.size() - begin)));
+        query(state, std::span<const broad::Move>(state.query_boxes)
+                         .subspan(begin, std::min(portion, state.query_boxes.size() - begin)));
     }
     state.report.candidates = state.candidates.size();
-    std::erase_if(state.candidates,
-                  [&](Pair pair) { return (!all_anew && was_there(state, pair)) || !wanted(state, pair); });
+    std::erase_if(state.candidates, [&](Pair pair) {
+        return (!all_new && overlapped_before(state, pair)) || !may_make_contact(state, pair);
+    });
     state.sorter.sort(state.candidates);
     state.candidates.erase(std::unique(state.candidates.begin(), state.candidates.end()), state.candidates.end());
 }
 
-/// Whether a pair of the list is over: its boxes came apart, somebody removed or changed a collider. Cheap for pairs to
-/// which nothing happened: two bytes are read.
-bool is_over(const WorldState& state, Pair pair, std::uint32_t contact) {
+/// Whether a pair of a list ends: its boxes parted, or a collider was removed or changed. Reads two bytes of pairs that
+/// did not change.
+bool has_ended(const WorldState& state, Pair pair, std::uint32_t contact) {
     const auto change = static_cast<std::uint8_t>(state.changes[pair.a] | state.changes[pair.b]);
     if (change == 0) return false;
     if ((change & edited) && !is_current(state, state.contacts[contact])) return true;
-    return !overlaps(state.boxes[pair.a], state.boxes[pair.b]) || ((change & edited) && !wanted(state, pair));
+    return !overlaps(state.boxes[pair.a], state.boxes[pair.b]) || ((change & edited) && !may_make_contact(state, pair));
 }
 
-/// Puts new pairs into a list and ends those that are over. What neither began nor ended is looked at through two bytes
-/// a pair, and moved in whole runs when anything did. A found pair that goes on is left as it is.
-void update_list(WorldState& state, PairList& list, std::span<const Pair> found) {
-    std::vector<std::uint32_t>& over = state.scratch;
-    over.clear();
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        if (is_over(state, list.pairs[i], list.contacts[i])) {
-            over.push_back(static_cast<std::uint32_t>(i));
-        } else if ((state.changes[list.pairs[i].a] | state.changes[list.pairs[i].b]) & edited) {
-            state.contacts[list.contacts[i]].frozen = false;
-        }
-    }
-    if (over.empty() && found.empty()) return;
-
-    PairList& next = state.spare_list;
-    next.clear();
-    next.pairs.reserve(list.size() + found.size());
-    next.contacts.reserve(list.size() + found.size());
-    std::size_t taken = 0;  // of the list
-    const auto take_until = [&](std::size_t end) {
-        const auto run = [&](const auto& from, auto& into) {
-            into.insert(into.end(), from.begin() + static_cast<std::ptrdiff_t>(taken),
-                        from.begin() + static_cast<std::ptrdiff_t>(end));
-        };
-        run(list.pairs, next.pairs);
-        run(list.contacts, next.contacts);
-        taken = end;
-    };
-    std::size_t i = 0, j = 0;
-    while (i < over.size() || j < found.size()) {
-        if (j == found.size() || (i < over.size() && list.pairs[over[i]] <= found[j])) {
-            take_until(over[i]);
-            end_contact(state, list.contacts[over[i++]]);
-            ++taken;  // a found pair with the same key is a new one
-        } else {
-            const auto from = list.pairs.begin() + static_cast<std::ptrdiff_t>(taken);
-            take_until(
-                static_cast<std::size_t>(std::lower_bound(from, list.pairs.end(), found[j]) - list.pairs.begin()));
-            if (taken == list.size() || list.pairs[taken] != found[j]) next.add(found[j], add_contact(state, found[j]));
-            ++j;
-        }
-    }
-    take_until(list.size());
-    std::swap(list, next);
+/// Adds new pairs to a list with their contacts, and ends pairs and contacts.
+void update_list(WorldState& state, pairs::PairList& list, std::span<const Pair> found) {
+    list.update(
+        found,
+        [&](std::size_t i) {
+            if (has_ended(state, list.pairs[i], list.values[i])) return true;
+            if ((state.changes[list.pairs[i].a] | state.changes[list.pairs[i].b]) & edited)
+                state.contacts[list.values[i]].frozen = false;
+            return false;
+        },
+        [&](std::uint32_t contact) { end_contact(state, contact); },
+        [&](Pair pair) { return add_contact(state, pair); });
 }
 
 }  // namespace
 
 void track_pairs(WorldState& state) {
-    const auto commit = [&] {
-        for (broad::AnyStructure* boxes : {&state.awake_boxes, &state.asleep_boxes, &state.static_boxes}) {
-            if (state.picks_structures) broad::suit(*boxes, broad::BoxUse::IsAsked);
-            boxes->commit(*state.tasks);
-        }
-    };
     state.query_boxes.clear();
     for (const std::uint32_t c : state.moved) state.query_boxes.push_back({c, state.boxes[c]});
-    state.awake_boxes.move(*state.tasks, state.query_boxes);
-    commit();
+    state.box_sets.of(MotionState::Awake).move(*state.tasks, state.query_boxes);
+    state.box_sets.commit(*state.tasks);
     const bool edits = state.removed_any || !state.edited_colliders.empty();
     if (edits) wake_around_edits(state);
     gather_queries(state);
     if (!state.query_boxes.empty() || edits) {
         find_candidates(state);
-        // A new or moved obstacle wakes what it meets; what was made asleep wakes nobody.
+        // An added or moved collider wakes what it touches, unless it was added asleep.
         for (const Pair pair : state.candidates)
             for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
                 const bool acts =
                     (state.changes[obstacle] & edited) && !(state.changes[other] & edited) &&
                     !state.colliders[obstacle].sensor &&
                     state.bodies.traits[state.colliders[obstacle].body].motion_state != MotionState::Asleep;
-                if (acts) want_awake(state, state.colliders[other].body);
+                if (acts) request_wake(state, state.colliders[other].body);
             }
-        wake_wanted_islands(state);
+        wake_requested_islands(state);
         const auto awake_pair = [&](Pair pair) {
             return state.bodies.traits[state.colliders[pair.a].body].motion_state == MotionState::Awake ||
                    state.bodies.traits[state.colliders[pair.b].body].motion_state == MotionState::Awake;
@@ -235,7 +196,7 @@ void track_pairs(WorldState& state) {
         if (const auto limit = static_cast<std::size_t>(state.settings.max_pairs); limit != 0) {
             room = std::min(active, limit > state.active.size() ? limit - state.active.size() : 0);
             state.report.pairs_dropped += static_cast<std::uint32_t>(active - room);
-            state.ask_all = state.ask_all || room < active;
+            state.query_all_awake = state.query_all_awake || room < active;
         }
         update_list(state, state.active, std::span<const Pair>(state.candidates).first(room));
         if (edits || active < state.candidates.size())

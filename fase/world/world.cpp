@@ -1,15 +1,16 @@
-/// The world's surface: making, stepping, reading.
+/// World: creation, stepping, reading.
 #include "fase/world/world.hpp"
 
 #include <atomic>
 #include <new>
 
+#include "fase/core/detail/text.hpp"
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
 namespace {
 
-/// Numbers worlds, so that the ids of one are refused by another; wraps after 65,535.
+/// Returns a number for a new world, so that a world rejects the ids of another. Wraps after 65,535.
 std::uint16_t next_world_number() {
     static std::atomic<std::uint32_t> count{0};
     return static_cast<std::uint16_t>(count.fetch_add(1, std::memory_order_relaxed) % 0xffff + 1);
@@ -26,11 +27,12 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
     if (auto checked = check(settings); !checked) return checked.error();
     if (setup.threads < 0 || setup.threads > 1024)
         return Error{Status::BadArgument, "Setup.threads",
-                     "found " + std::to_string(setup.threads) + ", need 0 to 1024", "0 takes all cores"};
+                     "found " + std::to_string(setup.threads) + "; expected 0 to 1024", "0 uses all cores"};
     auto structure = broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
     if (!structure) {
         Error error = structure.error();
         error.where = "Setup.structure";
+        error.remedy = "or leave it at \"auto\"";
         return error;
     }
     try {
@@ -39,13 +41,13 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
         state->body_ids = IdPool<BodyTag>(number);
         state->collider_ids = IdPool<ColliderTag>(number);
         state->settings = settings;
-        state->picks_structures = setup.structure == "auto";
-        state->static_boxes = state->asleep_boxes = state->awake_boxes = *structure;
+        state->box_sets = setup.structure == "auto" ? pairs::BoxSets::automatic(broad::BoxUse::IsQueried)
+                                                    : pairs::BoxSets(*structure);
         if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
         state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();
         return World(std::move(state));
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::create", "no memory for a world", "free some"};
+        return Error{Status::NoMemory, "World::create", "out of memory for a world", "free memory and try again"};
     }
 }
 
@@ -53,8 +55,8 @@ Result<StepReport> World::step() { return step(state_->settings.time_step); }
 
 Result<StepReport> World::step(float seconds) {
     if (!(seconds >= 0 && seconds <= 1))
-        return Error{Status::BadArgument, "World::step: seconds", "found " + std::to_string(seconds) + ", need 0 to 1",
-                     "take several steps for longer times"};
+        return Error{Status::BadArgument, "World::step: seconds",
+                     "found " + detail::text_of(seconds) + "; expected 0 to 1", "take several steps for longer times"};
     if (state_->stepping)
         return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
     try {
@@ -64,7 +66,8 @@ Result<StepReport> World::step(float seconds) {
         return state_->report;
     } catch (const std::bad_alloc&) {
         state_->stepping = false;
-        return Error{Status::NoMemory, "World::step", "no memory for the step", "restore a snapshot, or remove bodies"};
+        return Error{Status::NoMemory, "World::step", "out of memory for the step",
+                     "restore a snapshot, or remove bodies"};
     }
 }
 
@@ -112,7 +115,7 @@ Result<ColliderState> World::collider(ColliderId collider) const {
     out.body = *state_->body_ids.id_at(c.body);
     out.shape = &state_->shapes[c.shape].shape;
     out.def = {c.in_body, c.material, c.density, c.filter, c.sensor, c.user};
-    out.box = reaching_box(*state_, collider.index, 0, 0);
+    out.box = speculative_box(*state_, collider.index, 0, 0);
     return out;
 }
 
@@ -139,8 +142,8 @@ std::vector<ColliderId> World::colliders_of(BodyId body) const {
 }
 
 void World::read_contacts(std::vector<ContactState>& out) const {
-    for (const PairList* list : {&state_->active, &state_->resting})
-        for (const std::uint32_t index : list->contacts) {
+    for (const pairs::PairList* list : {&state_->active, &state_->resting})
+        for (const std::uint32_t index : list->values) {
             const dynamics::Contact& c = state_->contacts[index];
             ContactState contact;
             contact.a = {c.collider_a, c.generation_a, state_->collider_ids.owner()};

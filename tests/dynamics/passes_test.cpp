@@ -1,4 +1,4 @@
-// The wide passes against the clear ones, and the pieces of the solver alone.
+// The SIMD passes against the reference, and the parts of the solver alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace fase::dynamics {
 namespace {
 
-/// Random bodies and blocks of contacts that share no movable body.
+/// Random bodies and blocks of contacts that share no dynamic body.
 struct Case {
     std::vector<SolverBody> bodies;
     std::vector<SolverMass> masses;
     std::vector<ContactBlock> blocks;
-    explicit Case(std::uint64_t seed, int blocks_wanted, bool one_sided) {
+    explicit Case(std::uint64_t seed, int block_count, bool one_sided) {
         Random random(seed);
-        const auto count = static_cast<std::size_t>(blocks_wanted) * block_lanes;
+        const auto count = static_cast<std::size_t>(block_count) * block_lanes;
         bodies.resize(2 * count + 2);
         masses.resize(bodies.size());
         for (std::size_t i = 1; i + 1 < bodies.size(); ++i) {
@@ -36,7 +36,7 @@ struct Case {
             for (const int k : {0, 3, 5}) masses[i].inertia[k] = random.between(1, 4);
             for (const int k : {1, 2, 4}) masses[i].inertia[k] = random.between(-0.3f, 0.3f);
         }
-        blocks.resize(static_cast<std::size_t>(blocks_wanted));
+        blocks.resize(static_cast<std::size_t>(block_count));
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             ContactBlock& k = blocks[b];
             std::memset(&k, 0, sizeof k);
@@ -69,10 +69,10 @@ struct Case {
     }
 };
 
-TEST(ContactPasses, wide_lanes_give_the_bits_of_single_ones) {
+TEST(ContactPasses, wide_lanes_give_the_bits_of_the_scalar_reference) {
     for (const bool one_sided : {false, true})
         for (std::uint64_t seed = 0; seed < 50; ++seed) {
-            Case wide(seed, 3, one_sided), clear(seed, 3, one_sided);
+            Case wide(seed, 3, one_sided), reference(seed, 3, one_sided);
             for (const Pass pass :
                  {Pass::Prepare, Pass::WarmStart, Pass::Biased, Pass::Relax, Pass::Biased, Pass::Relax}) {
                 const auto input = [&](Case& c) {
@@ -80,13 +80,14 @@ TEST(ContactPasses, wide_lanes_give_the_bits_of_single_ones) {
                                      3};
                 };
                 run_pass(pass, wide.blocks.data(), wide.blocks.size(), one_sided, input(wide));
-                run_pass_reference(pass, clear.blocks.data(), clear.blocks.size(), one_sided, input(clear));
+                run_pass_reference(pass, reference.blocks.data(), reference.blocks.size(), one_sided, input(reference));
                 ASSERT_EQ(
-                    std::memcmp(wide.blocks.data(), clear.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)), 0);
-                // The last row takes the writes of unused lanes: nobody reads it.
-                ASSERT_EQ(
-                    std::memcmp(wide.bodies.data(), clear.bodies.data(), (wide.bodies.size() - 1) * sizeof(SolverBody)),
+                    std::memcmp(wide.blocks.data(), reference.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)),
                     0);
+                // The last row receives the writes of unused lanes and is never read.
+                ASSERT_EQ(std::memcmp(wide.bodies.data(), reference.bodies.data(),
+                                      (wide.bodies.size() - 1) * sizeof(SolverBody)),
+                          0);
             }
         }
 }
@@ -108,7 +109,7 @@ TEST(ContactPasses, impulses_push_and_stay_inside_the_cone) {
         }
 }
 
-TEST(ContactPasses, impulses_keep_the_momentum_of_both_bodies) {
+TEST(ContactPasses, impulses_conserve_momentum) {
     Case c(11, 4, false);
     const auto momentum = [&] {
         Vec3d sum;
@@ -125,7 +126,7 @@ TEST(ContactPasses, impulses_keep_the_momentum_of_both_bodies) {
     EXPECT_LT(length(momentum() - before), 1e-3);
 }
 
-TEST(FreeTurn, keeps_the_angular_momentum_and_holds_the_energy) {
+TEST(TorqueFreeRotation, conserves_angular_momentum_and_energy) {
     const Vec3d moments{1, 2, 2.5};
     Quatd rotation;
     Vec3d momentum{3, 1, -2};
@@ -135,21 +136,21 @@ TEST(FreeTurn, keeps_the_angular_momentum_and_holds_the_energy) {
     };
     const double first = energy();
     for (int i = 0; i < 24000; ++i) {
-        free_turn(rotation, momentum, moments, 1.0 / 240);
+        rotate_torque_free(rotation, momentum, moments, 1.0 / 240);
         ASSERT_NEAR(energy() / first, 1, 1e-3);
     }
     EXPECT_LT(length(rotate(rotation, momentum) - start), 1e-10 * length(start));
 }
 
-TEST(FreeTurn, tangents_are_close_and_odd) {
+TEST(TorqueFreeRotation, tangents_are_accurate_and_antisymmetric) {
     for (double x = 0; x <= 1; x += 0.01) {
-        EXPECT_NEAR(half_angle_tangent(x), std::tan(x), 2e-3 * std::tan(x) + 1e-7);
-        EXPECT_EQ(half_angle_tangent(-x), -half_angle_tangent(x));
+        EXPECT_NEAR(approximate_tangent(x), std::tan(x), 2e-3 * std::tan(x) + 1e-7);
+        EXPECT_EQ(approximate_tangent(-x), -approximate_tangent(x));
     }
-    EXPECT_GT(half_angle_tangent(2), half_angle_tangent(1));
+    EXPECT_GT(approximate_tangent(2), approximate_tangent(1));
 }
 
-TEST(Islands, sets_join_whatever_the_order_and_are_named_by_their_least_member) {
+TEST(Islands, sets_do_not_depend_on_the_order_and_are_named_by_their_smallest_member) {
     Random random(1);
     for (int round = 0; round < 50; ++round) {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
@@ -169,18 +170,18 @@ TEST(Islands, sets_join_whatever_the_order_and_are_named_by_their_least_member) 
     }
 }
 
-TEST(Colouring, no_colour_meets_a_body_twice) {
+TEST(Colouring, no_body_has_two_contacts_of_one_colour) {
     Random random(2);
     Colouring colouring;
     colouring.reset(30);
     std::vector<std::vector<int>> seen(30);
-    int refused = 0;
+    int overflow = 0;
     for (int i = 0; i < 2000; ++i) {
         const auto a = static_cast<std::uint32_t>(random.below(30)), b = static_cast<std::uint32_t>(random.below(30));
         if (a == b) continue;
         const int colour = colouring.colour(a, b);
         if (colour == Colouring::none) {
-            ++refused;
+            ++overflow;
             continue;
         }
         EXPECT_LT(colour, Colouring::two_sided);
@@ -189,7 +190,7 @@ TEST(Colouring, no_colour_meets_a_body_twice) {
             seen[body].push_back(colour);
         }
     }
-    EXPECT_GT(refused, 0);
+    EXPECT_GT(overflow, 0);
     EXPECT_GE(colouring.colour_one_sided(3), Colouring::two_sided);
 }
 

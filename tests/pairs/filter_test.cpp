@@ -11,7 +11,7 @@ namespace {
 
 TEST(CollisionFilter, CollidesWithAllByDefault) { EXPECT_TRUE(may_collide(CollisionFilter{}, CollisionFilter{})); }
 
-TEST(CollisionFilter, NeedsEachInTheMaskOfTheOther) {
+TEST(CollisionFilter, RequiresEachInTheMaskOfTheOther) {
     const CollisionFilter player{.category = 1, .mask = 0b110}, wall{.category = 0b10, .mask = 1};
     const CollisionFilter ghost{.category = 0b10, .mask = 0};
     EXPECT_TRUE(may_collide(player, wall));
@@ -19,18 +19,18 @@ TEST(CollisionFilter, NeedsEachInTheMaskOfTheOther) {
     EXPECT_FALSE(may_collide(player, player));
 }
 
-TEST(CollisionFilter, HasSixtyFourKinds) {
+TEST(CollisionFilter, HasSixtyFourCategories) {
     const CollisionFilter last{.category = 1ull << 63, .mask = 1ull << 63};
     EXPECT_TRUE(may_collide(last, last));
     EXPECT_FALSE(may_collide(last, {.mask = ~(1ull << 63)}));
 }
 
-TEST(CollisionFilter, LetsASharedGroupDecideWhateverTheBitsSay) {
-    const CollisionFilter deaf_friend{.category = 0, .mask = 0, .group = 3}, foe{.group = -3};
-    EXPECT_TRUE(may_collide(deaf_friend, deaf_friend));
-    EXPECT_FALSE(may_collide(foe, foe));
-    EXPECT_FALSE(may_collide(deaf_friend, foe)) << "different groups: the bits decide";
-    EXPECT_TRUE(may_collide(foe, CollisionFilter{.group = -4}));
+TEST(CollisionFilter, LetsASharedGroupOverrideTheBits) {
+    const CollisionFilter no_bits{.category = 0, .mask = 0, .group = 3}, never{.group = -3};
+    EXPECT_TRUE(may_collide(no_bits, no_bits));
+    EXPECT_FALSE(may_collide(never, never));
+    EXPECT_FALSE(may_collide(no_bits, never)) << "different groups: the bits decide";
+    EXPECT_TRUE(may_collide(never, CollisionFilter{.group = -4}));
     EXPECT_FALSE(may_collide(CollisionFilter{.mask = 0}, CollisionFilter{.mask = 0})) << "group 0 is no group";
 }
 
@@ -39,13 +39,13 @@ RC_GTEST_PROP(CollisionFilter, IsSymmetric, (std::uint64_t ca, std::uint64_t ma,
     RC_ASSERT(may_collide(a, b) == may_collide(b, a));
 }
 
-TEST(PairExclusions, RefuseABodyWithItself) {
+TEST(PairExclusions, RejectABodyWithItself) {
     PairExclusions excluded;
     EXPECT_FALSE(excluded.add(4, 4));
     EXPECT_EQ(excluded.size(), 0u);
 }
 
-TEST(PairExclusions, ForgetAllPairsOfABody) {
+TEST(PairExclusions, RemoveAllPairsOfABody) {
     PairExclusions excluded;
     excluded.add(1, 2);
     excluded.add(3, 1);

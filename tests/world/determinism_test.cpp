@@ -1,5 +1,6 @@
-// The same calls give the same bits: for any threads, structure, lanes, and after a snapshot.
-#include "fase/world/detail/state.hpp"
+// Determinism: the same calls give the same bits for any number of threads, structure and SIMD width, and after a
+// snapshot.
+#include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {
@@ -9,7 +10,7 @@ using namespace test;
 
 std::uint64_t hash_after(const Setup& setup, int steps, bool reference = false) {
     World world = make_world({}, setup);
-    world.state().solver.reference = reference;
+    WorldStateAccess::of(world).solver.reference = reference;
     add_pile(world, 150);
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(world.step());
     return world.hash();
@@ -22,23 +23,23 @@ TEST(Determinism, a_pile_hashes_the_same_for_any_number_of_threads) {
 }
 
 TEST(Determinism, a_pile_hashes_the_same_with_every_structure) {
-    const std::uint64_t judge = hash_after({.structure = "brute_force"}, 300);
+    const std::uint64_t reference = hash_after({.structure = "brute_force"}, 300);
     broad::for_each_structure([&]<broad::Structure S>() {
-        EXPECT_EQ(hash_after({.structure = std::string(broad::StructureInfo(S::info).name)}, 300), judge)
+        EXPECT_EQ(hash_after({.structure = std::string(broad::StructureInfo(S::info).name)}, 300), reference)
             << broad::StructureInfo(S::info).name;
     });
 }
 
-TEST(Determinism, a_pile_hashes_as_it_did) {
-    // Another value means another simulation, on every machine: the changelog says why.
+TEST(Determinism, a_pile_has_its_golden_hash) {
+    // A new value means that the simulation changed, on every machine; the changelog must say why.
     EXPECT_EQ(hash_after({}, 300), 0x5b0a21edb25dce89u);
 }
 
-TEST(Determinism, wide_lanes_give_the_bits_of_single_ones) {
+TEST(Determinism, wide_lanes_give_the_bits_of_the_scalar_reference) {
     EXPECT_EQ(hash_after({}, 200, true), hash_after({}, 200, false));
 }
 
-TEST(Determinism, a_users_own_scheduler_gives_the_same) {
+TEST(Determinism, a_user_supplied_scheduler_gives_the_same_hash) {
     struct Backwards final : TaskRunner {
         void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
             for (std::size_t i = count; i-- > 0;) chunk(i);
@@ -48,24 +49,24 @@ TEST(Determinism, a_users_own_scheduler_gives_the_same) {
     EXPECT_EQ(hash_after({.tasks = &backwards}, 200), hash_after({}, 200));
 }
 
-TEST(Determinism, a_restored_snapshot_goes_on_to_the_same_bits) {
+TEST(Determinism, a_restored_snapshot_continues_with_the_same_bits) {
     for (const int before : {0, 1, 40, 250}) {
         World world = make_world();
         add_pile(world, 80);
         for (int i = 0; i < before; ++i) ASSERT_TRUE(world.step());
-        const std::uint64_t then = world.hash();
-        const std::vector<std::byte> kept = world.snapshot();
+        const std::uint64_t saved_hash = world.hash();
+        const std::vector<std::byte> saved = world.snapshot();
         World other = make_world({}, {.structure = "brute_force", .threads = 2});
         add_pile(other, 5);
-        ASSERT_TRUE(other.restore(kept));
-        EXPECT_EQ(other.hash(), then);
+        ASSERT_TRUE(other.restore(saved));
+        EXPECT_EQ(other.hash(), saved_hash);
         for (int i = 0; i < 120; ++i) {
             ASSERT_TRUE(world.step());
             ASSERT_TRUE(other.step());
             ASSERT_EQ(other.hash(), world.hash()) << "snapshot after " << before << ", step " << i;
         }
-        ASSERT_TRUE(world.restore(kept));
-        EXPECT_EQ(world.hash(), then);
+        ASSERT_TRUE(world.restore(saved));
+        EXPECT_EQ(world.hash(), saved_hash);
     }
 }
 
@@ -73,15 +74,15 @@ TEST(Determinism, a_damaged_snapshot_is_refused_and_changes_nothing) {
     World world = make_world();
     add_pile(world, 3);
     ASSERT_TRUE(world.step());
-    const std::vector<std::byte> kept = world.snapshot();
+    const std::vector<std::byte> saved = world.snapshot();
     const std::uint64_t before = world.hash();
-    for (std::size_t size = 0; size < kept.size(); size += 1 + size / 64) {
-        const auto result = world.restore(std::span(kept).first(size));
+    for (std::size_t size = 0; size < saved.size(); size += 1 + size / 64) {
+        const auto result = world.restore(std::span(saved).first(size));
         ASSERT_FALSE(result) << size;
         ASSERT_EQ(result.status(), Status::Format);
     }
-    for (std::size_t at = 0; at < kept.size(); at += 1 + at / 256) {
-        std::vector<std::byte> flipped = kept;
+    for (std::size_t at = 0; at < saved.size(); at += 1 + at / 256) {
+        std::vector<std::byte> flipped = saved;
         flipped[at] ^= std::byte{0x10};
         ASSERT_FALSE(world.restore(flipped)) << at;
     }

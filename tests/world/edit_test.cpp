@@ -1,5 +1,5 @@
-// Bodies that are changed while the world lives.
-#include "fase/world/detail/state.hpp"
+// Editing bodies between steps.
+#include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {
@@ -20,7 +20,7 @@ TEST(Edit, a_collider_off_the_centre_moves_the_centre_of_mass_and_not_the_frame)
     EXPECT_NEAR(state(world, *body).mass, 2000, 1e-3);
 }
 
-TEST(Edit, a_compound_stands_on_all_its_parts) {
+TEST(Edit, a_compound_rests_on_all_its_parts) {
     World world = make_world();
     add_ground(world);
     const auto table = world.add_body({.position = {0, 1, 0}});
@@ -125,7 +125,7 @@ TEST(Edit, a_body_changes_its_kind) {
     EXPECT_NEAR(state(world, ball).pose.position.y, 2.5, 0.05);
 }
 
-TEST(Edit, forces_and_impulses_do_what_newton_says) {
+TEST(Edit, forces_and_impulses_follow_newtons_laws) {
     Settings settings;
     settings.gravity = {};
     World world = make_world(settings);
@@ -159,10 +159,10 @@ TEST(Edit, material_modes_combine_as_named) {
     EXPECT_FLOAT_EQ(combined(0.2f, CombineMode::GeometricMean, 0.6f, CombineMode::Multiply), 0.12f);
 }
 
-TEST(Edit, a_thousand_bodies_come_and_go_and_leave_nothing) {
+TEST(Edit, adding_and_removing_a_thousand_bodies_leaks_nothing) {
     World world = make_world();
     add_ground(world);
-    const std::size_t shapes = world.state().shapes.size();
+    const std::size_t shapes = WorldStateAccess::of(world).shapes.size();
     Random random(9);
     std::vector<BodyId> bodies;
     for (int step = 0; step < 100; ++step) {
@@ -177,22 +177,23 @@ TEST(Edit, a_thousand_bodies_come_and_go_and_leave_nothing) {
             bodies.erase(bodies.begin() + static_cast<long>(at));
         }
         ASSERT_TRUE(world.step());
-        broad::AnyStructure awake = world.state().awake_boxes;  // may wait for what fell asleep to be taken out
+        broad::AnyStructure awake = WorldStateAccess::of(world).box_sets.of(
+            MotionState::Awake);  // erases of bodies that fell asleep may still be pending
         awake.commit();
         ASSERT_EQ(awake.broken_invariant(), "");
     }
     for (const BodyId body : bodies) ASSERT_TRUE(world.remove_body(body));
     ASSERT_TRUE(world.step());
     EXPECT_EQ(world.body_count(), 1u);
-    EXPECT_EQ(world.state().active.size() + world.state().resting.size(), 0u);
-    EXPECT_EQ(world.state().contacts.size(), world.state().free_contacts.size());
-    EXPECT_EQ(world.state().shapes.size() - world.state().free_shapes.size(), shapes);
+    EXPECT_EQ(WorldStateAccess::of(world).active.size() + WorldStateAccess::of(world).resting.size(), 0u);
+    EXPECT_EQ(WorldStateAccess::of(world).contacts.size(), WorldStateAccess::of(world).free_contacts.size());
+    EXPECT_EQ(WorldStateAccess::of(world).shapes.size() - WorldStateAccess::of(world).free_shapes.size(), shapes);
 }
 
-TEST(Edit, equal_shapes_are_kept_once) {
+TEST(Edit, equal_shapes_are_stored_once) {
     World world = make_world();
     for (int i = 0; i < 10; ++i) add(world, {.position = {3.0 * i, 0, 0}}, Box{});
-    EXPECT_EQ(world.state().shapes.size(), 1u);
+    EXPECT_EQ(WorldStateAccess::of(world).shapes.size(), 1u);
 }
 
 }  // namespace

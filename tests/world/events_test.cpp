@@ -1,4 +1,4 @@
-// What a world tells after a step.
+// Events of a step.
 #include <set>
 
 #include "tests/world/worlds.hpp"
@@ -32,8 +32,8 @@ TEST(Events, a_contact_begins_once_and_ends_once) {
     EXPECT_EQ(ended, 1);
 }
 
-TEST(Events, every_pair_begins_before_it_ends_whatever_the_structure) {
-    std::vector<std::vector<ContactEvent>> told;
+TEST(Events, every_contact_begins_before_it_ends_for_every_structure) {
+    std::vector<std::vector<ContactEvent>> events;
     for (const char* structure : {"brute_force", "dynamic_bvh"}) {
         World world = make_world({}, {.structure = structure});
         add_pile(world, 60);
@@ -53,9 +53,9 @@ TEST(Events, every_pair_begins_before_it_ends_whatever_the_structure) {
         }
         EXPECT_GT(all.size(), 100u);
         for (ContactEvent& e : all) e.a.owner = e.b.owner = 0;
-        told.push_back(all);
+        events.push_back(all);
     }
-    EXPECT_EQ(told[0], told[1]);
+    EXPECT_EQ(events[0], events[1]);
 }
 
 TEST(Events, a_removed_body_ends_its_contacts_in_the_next_step) {
@@ -71,7 +71,7 @@ TEST(Events, a_removed_body_ends_its_contacts_in_the_next_step) {
     EXPECT_FALSE(world.contains(collider));
 }
 
-TEST(Events, a_hit_tells_speed_and_impulse) {
+TEST(Events, a_hit_reports_speed_and_impulse) {
     World world = make_world();
     add_ground(world);
     const BodyId ball = add(world, {.position = {0, 5.5, 0}}, Sphere{0.5f});
@@ -89,7 +89,7 @@ TEST(Events, a_hit_tells_speed_and_impulse) {
     EXPECT_NEAR(hits[0].point.y, 0, 0.2);
 }
 
-TEST(Events, a_sensor_tells_who_comes_and_goes_and_pushes_nobody) {
+TEST(Events, a_sensor_reports_overlaps_and_applies_no_forces) {
     World world = make_world();
     const BodyId gate = add(world, {.kind = BodyKind::Static, .position = {0, 2, 0}}, Box{}, {.sensor = true});
     const BodyId ball = add(world, {.position = {0, 5, 0}}, Sphere{0.2f});
@@ -110,7 +110,7 @@ TEST(Events, a_sensor_tells_who_comes_and_goes_and_pushes_nobody) {
     EXPECT_EQ(state(world, ball).pose.position.y, state(world, twin).pose.position.y);
 }
 
-TEST(Events, sleeping_and_waking_are_told) {
+TEST(Events, sleeping_and_waking_are_reported) {
     World world = make_world();
     add_ground(world);
     const BodyId box = add(world, {.position = {0, 0.5, 0}}, Box{});

@@ -1,4 +1,4 @@
-// The benchmark set-ups of SimBenchmark (Kang, Hwangbo 2018), held to bounds well below the published figures of other
+// The benchmark scenes of SimBenchmark (Kang, Hwangbo 2018), with bounds well below the published figures of other
 // engines.
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// A world with z up, as the set-ups are written.
+/// A world with z up, as in the published scenes.
 World z_up(Settings settings = {}) {
     settings.gravity = {0, 0, -9.81f};
     settings.time_step = 1e-3f;
@@ -24,21 +24,21 @@ void add_z_ground(World& world, const Material& material) {
 /// Mean of |v_box - a_box t|² + |v_ball - a_ball t|² over 4 s, in (m/s)².
 double rolling_error(Vec3d direction) {
     World world = z_up();
-    const CombineMode least = CombineMode::Minimum;
-    add_z_ground(world, {.friction = 0.4f, .friction_combine = least});
+    const CombineMode minimum = CombineMode::Minimum;
+    add_z_ground(world, {.friction = 0.4f, .friction_combine = minimum});
     const double overlap = 2e-5;
     const BodyId box =
         add(world,
             {.position = {0, 0, 0.5 - overlap},
              .mass = MassProperties{10, {}, Mat3::diagonal({10.f / 12 * 401, 10.f / 12 * 401, 10.f / 12 * 800})}},
-            Box{{10, 10, 0.5f}}, {.material = {.friction = 0.8f, .friction_combine = least}});
+            Box{{10, 10, 0.5f}}, {.material = {.friction = 0.8f, .friction_combine = minimum}});
     BodyId first;
     for (int i = 0; i < 5; ++i)
         for (int j = 0; j < 5; ++j) {
             const BodyId ball = add(world,
                                     {.position = {2.0 * i - 4, 2.0 * j - 4, 1.5 - 3 * overlap},
                                      .mass = MassProperties{1, {}, Mat3::diagonal({0.1f, 0.1f, 0.1f})}},
-                                    Sphere{0.5f}, {.material = {.friction = 0.8f, .friction_combine = least}});
+                                    Sphere{0.5f}, {.material = {.friction = 0.8f, .friction_combine = minimum}});
             if (i == 0 && j == 0) first = ball;
         }
     const double push = 0.4 * 35 * 9.81;

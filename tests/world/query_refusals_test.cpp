@@ -1,4 +1,4 @@
-// Questions that a world refuses, and those to which there is no answer.
+// Queries with invalid arguments, and queries of an empty world.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +14,7 @@ using namespace test;
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
+TEST(Query, rejects_invalid_numbers_and_names_the_field) {
     World world = make_world();
     add_ground(world);
     add(world, {.position = {0, 2, 0}}, Box{});
@@ -26,7 +26,7 @@ TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
         EXPECT_EQ(world.hash(), before);
     };
     std::vector<RayHit> hits;
-    std::vector<std::optional<RayHit>> answers;
+    std::vector<std::optional<RayHit>> results;
     std::vector<Found> found;
     std::vector<NearHit> near;
     const std::vector<std::pair<Ray, std::string>> bad_rays{
@@ -41,7 +41,7 @@ TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
         refused(any_hit(world, ray), field);
         refused(cast_ray_all(world, ray, {}, hits), field);
         const std::vector<Ray> rays{{{}, {0, 1, 0}}, ray};
-        refused(cast_rays(world, rays, {}, answers), "rays[1]." + field.substr(4));
+        refused(cast_rays(world, rays, {}, results), "rays[1]." + field.substr(4));
     }
     const Pose here{{0, 1, 0}, {}};
     refused(cast_shape(world, Sphere{0}, here, {0, 1, 0}, 1), "radius");
@@ -69,24 +69,24 @@ TEST(Query, refuses_numbers_that_cannot_be_meant_and_names_them) {
     frustum = box_frustum({}, {}, {1, 1, 1});
     for (Frustum::Side& side : frustum.sides) side = {-side.normal, -side.offset};
     refused(seen_by(world, frustum, {}, found), "frustum");
-    EXPECT_TRUE(hits.empty() && answers.empty() && found.empty() && near.empty());
+    EXPECT_TRUE(hits.empty() && results.empty() && found.empty() && near.empty());
 }
 
-TEST(Query, from_inside_a_step_is_refused) {
-    struct Nosy final : TaskRunner {
+TEST(Query, inside_a_step_is_rejected) {
+    struct QueryingRunner final : TaskRunner {
         const World* world = nullptr;
-        Status seen = Status::Ok;
+        Status status = Status::Ok;
         void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
-            if (world != nullptr) seen = cast_ray(*world, {{0, 9, 0}, {0, -1, 0}}).status();
+            if (world != nullptr) status = cast_ray(*world, {{0, 9, 0}, {0, -1, 0}}).status();
             for (std::size_t i = 0; i < count; ++i) chunk(i);
         }
         [[nodiscard]] int threads() const override { return 2; }
-    } nosy;
-    World world = make_world({}, {.tasks = &nosy});
+    } runner;
+    World world = make_world({}, {.tasks = &runner});
     add_pile(world, 200);
-    nosy.world = &world;
+    runner.world = &world;
     run(world, 0.1);
-    EXPECT_EQ(nosy.seen, Status::Busy);
+    EXPECT_EQ(runner.status, Status::Busy);
 }
 
 TEST(Query, of_an_empty_world_finds_nothing) {

@@ -1,4 +1,4 @@
-// Queries on worlds as they stand, against a loop over all colliders.
+// World queries against a brute-force loop over all colliders.
 #include "fase/world/query.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/cast_shape.hpp"
 #include "fase/narrow/distance.hpp"
-#include "fase/world/detail/state.hpp"
+#include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 
 namespace fase {
@@ -40,15 +40,15 @@ Shape any_shape(Random& random) {
     }
 }
 
-/// Every living collider, by index, as the naive loops see it.
-struct Seen {
+/// A collider as the brute-force loops use it.
+struct Target {
     Found id;
     const Shape* shape = nullptr;
     Pose pose;
 };
-std::vector<Seen> all_of(const World& world) {
-    std::vector<Seen> out;
-    const WorldState& s = world.state();
+std::vector<Target> all_of(const World& world) {
+    std::vector<Target> out;
+    const WorldState& s = WorldStateAccess::of(world);
     for (std::uint32_t c = 0; c < s.collider_ids.size(); ++c) {
         const auto id = s.collider_ids.id_at(c);
         if (!id || s.colliders[c].sensor) continue;
@@ -64,12 +64,12 @@ Ray random_ray(Random& random) {
 }
 
 void expect_rays_right(const World& world, Random& random, int count) {
-    const std::vector<Seen> all = all_of(world);
+    const std::vector<Target> all = all_of(world);
     for (int i = 0; i < count; ++i) {
         const Ray ray = random_ray(random);
         std::vector<std::pair<double, std::size_t>> hits;
         for (std::size_t c = 0; c < all.size(); ++c)
-            if (const auto hit = narrow::cast_ray(*all[c].shape, all[c].pose, ray)) hits.push_back({hit->at, c});
+            if (const auto hit = narrow::cast_ray(*all[c].shape, all[c].pose, ray)) hits.push_back({hit->distance, c});
         std::sort(hits.begin(), hits.end());
         const auto found = opened(cast_ray(world, ray));
         ASSERT_EQ(found.has_value(), !hits.empty());
@@ -79,53 +79,53 @@ void expect_rays_right(const World& world, Random& random, int count) {
         ASSERT_EQ(every.size(), hits.size());
         for (std::size_t k = 0; k < hits.size(); ++k) {
             EXPECT_EQ((Found{every[k].body, every[k].collider}), all[hits[k].second].id);
-            EXPECT_EQ(every[k].at, static_cast<float>(hits[k].first));
+            EXPECT_EQ(every[k].distance, static_cast<float>(hits[k].first));
         }
         if (!found) continue;
         EXPECT_EQ(*found, every[0]);
         const auto exact = narrow::cast_ray(*all[hits[0].second].shape, all[hits[0].second].pose, ray);
         EXPECT_EQ(found->normal, exact->normal);
-        EXPECT_EQ(found->point, point_at(ray, exact->at));
+        EXPECT_EQ(found->point, point_at(ray, exact->distance));
     }
 }
 
 void expect_casts_right(const World& world, Random& random, int count) {
-    const std::vector<Seen> all = all_of(world);
+    const std::vector<Target> all = all_of(world);
     for (int i = 0; i < count; ++i) {
         const Shape shape = any_shape(random);
         const Pose pose{to_double(in_cube(random, 8)), random_rotation(random)};
-        const Vec3 way = direction(random);
+        const Vec3 along = direction(random);
         const float length = random.below(2) == 0 ? inf : random.between(0, 10);
-        double least = inf;
-        for (const Seen& c : all)
-            if (const auto hit = narrow::cast_shape(shape, pose, way, length, *c.shape, c.pose))
-                least = std::min(least, hit->at);
-        const auto found = opened(cast_shape(world, shape, pose, way, length));
-        ASSERT_EQ(found.has_value(), least < double(inf));
+        double nearest = inf;
+        for (const Target& c : all)
+            if (const auto hit = narrow::cast_shape(shape, pose, along, length, *c.shape, c.pose))
+                nearest = std::min(nearest, hit->distance);
+        const auto found = opened(cast_shape(world, shape, pose, along, length));
+        ASSERT_EQ(found.has_value(), nearest < double(inf));
         if (!found) continue;
-        EXPECT_LE(double(found->at), least + 1e-6);  // where it is first to touch the tolerance decides
-        EXPECT_NEAR(double(found->at), least, 1e-5 + 1e-6 * least);
+        EXPECT_LE(double(found->distance), nearest + 1e-6);  // the tolerance decides which collider is hit first
+        EXPECT_NEAR(double(found->distance), nearest, 1e-5 + 1e-6 * nearest);
         EXPECT_TRUE(world.contains(found->body) && world.contains(found->collider));
     }
 }
 
 void expect_places_right(const World& world, Random& random, int count) {
-    const std::vector<Seen> all = all_of(world);
+    const std::vector<Target> all = all_of(world);
     for (int i = 0; i < count; ++i) {
         const Pose pose{to_double(in_cube(random, 6)), random_rotation(random)};
         const Shape shape = any_shape(random);
-        const auto expect = [&](const std::vector<Found>& got, const auto& meets) {
-            std::vector<Found> wanted;
-            for (const Seen& c : all)
-                if (meets(c)) wanted.push_back(c.id);
-            EXPECT_EQ(got, wanted);
+        const auto expect = [&](const std::vector<Found>& got, const auto& matches) {
+            std::vector<Found> expected;
+            for (const Target& c : all)
+                if (matches(c)) expected.push_back(c.id);
+            EXPECT_EQ(got, expected);
         };
         std::vector<Found> got;
         opened(overlapping(world, shape, pose, {}, got));
-        expect(got, [&](const Seen& c) { return narrow::overlaps(*c.shape, shape, exactly_relative(c.pose, pose)); });
+        expect(got, [&](const Target& c) { return narrow::overlaps(*c.shape, shape, exactly_relative(c.pose, pose)); });
         got.clear();
         opened(colliders_at(world, pose.position, {}, got));
-        expect(got, [&](const Seen& c) {
+        expect(got, [&](const Target& c) {
             return narrow::overlaps(*c.shape, Sphere{0}, exactly_relative(c.pose, {pose.position, {}}));
         });
         got.clear();
@@ -133,7 +133,7 @@ void expect_places_right(const World& world, Random& random, int count) {
         const Vec3 centre = to_float(pose.position);
         opened(overlapping(world, Aabb{centre - half, centre + half}, {}, got));
         const Vec3d lo = to_double(centre - half), hi = to_double(centre + half);
-        expect(got, [&](const Seen& c) {
+        expect(got, [&](const Target& c) {
             return narrow::overlaps(*c.shape, Box{to_float((hi - lo) * 0.5)},
                                     exactly_relative(c.pose, {(lo + hi) * 0.5, {}}));
         });
@@ -141,43 +141,43 @@ void expect_places_right(const World& world, Random& random, int count) {
 }
 
 void expect_nearest_right(const World& world, Random& random, int count) {
-    const std::vector<Seen> all = all_of(world);
+    const std::vector<Target> all = all_of(world);
     for (int i = 0; i < count; ++i) {
         const Vec3d point = to_double(in_cube(random, 8));
         const float radius = random.below(2) == 0 ? inf : random.between(0, 6);
         const std::size_t k = 1 + random.below(6);
-        std::vector<std::pair<double, std::size_t>> wanted;
+        std::vector<std::pair<double, std::size_t>> expected;
         for (std::size_t c = 0; c < all.size(); ++c) {
             const double d = std::max(
                 0.0,
                 narrow::signed_distance(*all[c].shape, Sphere{0}, exactly_relative(all[c].pose, {point, {}})).distance);
-            if (d <= double(radius)) wanted.push_back({d, c});
+            if (d <= double(radius)) expected.push_back({d, c});
         }
-        std::sort(wanted.begin(), wanted.end());
-        if (wanted.size() > k) wanted.resize(k);
+        std::sort(expected.begin(), expected.end());
+        if (expected.size() > k) expected.resize(k);
         std::vector<NearHit> got;
         opened(nearest(world, point, k, radius, {}, got));
-        ASSERT_EQ(got.size(), wanted.size());
+        ASSERT_EQ(got.size(), expected.size());
         for (std::size_t j = 0; j < got.size(); ++j) {
-            EXPECT_EQ(got[j].collider, all[wanted[j].second].id.collider);
-            EXPECT_EQ(got[j].distance, static_cast<float>(wanted[j].first));
-            EXPECT_NEAR(length(got[j].point - point), wanted[j].first, 1e-6);
+            EXPECT_EQ(got[j].collider, all[expected[j].second].id.collider);
+            EXPECT_EQ(got[j].distance, static_cast<float>(expected[j].first));
+            EXPECT_NEAR(length(got[j].point - point), expected[j].first, 1e-6);
         }
     }
 }
 
 void expect_views_right(const World& world, Random& random, int count) {
-    const std::vector<Seen> all = all_of(world);
+    const std::vector<Target> all = all_of(world);
     for (int i = 0; i < count; ++i) {
         const Vec3d centre = to_double(in_cube(random, 4));
-        const Quat turned = random_rotation(random);
+        const Quat rotation = random_rotation(random);
         const Vec3d half{2 + 3 * random.unit(), 2 + 3 * random.unit(), 2 + 3 * random.unit()};
-        const Frustum frustum = box_frustum(centre, turned, half);
+        const Frustum frustum = box_frustum(centre, rotation, half);
         std::vector<Found> seen, partly;
         opened(seen_by(world, frustum, {}, seen, &partly));
-        // A half-space in the place of a plane tells which side a shape is on.
-        std::vector<Found> wanted, wanted_partly;
-        for (const Seen& c : all) {
+        // The distance to a half-space at each plane says on which side of it a shape is.
+        std::vector<Found> expected, expected_partly;
+        for (const Target& c : all) {
             bool outside = !overlaps(bounds(frustum), bounds(*c.shape, c.pose)), inside = true;
             for (int k = 0; k < 6; ++k) {
                 const Frustum::Side& side = frustum.sides[static_cast<std::size_t>(k)];
@@ -194,15 +194,15 @@ void expect_views_right(const World& world, Random& random, int count) {
                 inside = inside &&
                          narrow::signed_distance(HalfSpace{}, *c.shape, exactly_relative(back, c.pose)).distance > 0;
             }
-            if (!outside) wanted.push_back(c.id);
-            if (!outside && !inside) wanted_partly.push_back(c.id);
+            if (!outside) expected.push_back(c.id);
+            if (!outside && !inside) expected_partly.push_back(c.id);
         }
-        EXPECT_EQ(seen, wanted);
-        EXPECT_EQ(partly, wanted_partly);
+        EXPECT_EQ(seen, expected);
+        EXPECT_EQ(partly, expected_partly);
     }
 }
 
-/// Every kind of query, some times, against a loop; and none of them changes the world.
+/// Tests every kind of query against the brute-force loops, and that none of them changes the world.
 void expect_right(const World& world, std::uint64_t seed, int count = 12) {
     const std::uint64_t before = world.hash();
     Random random(seed);
@@ -214,7 +214,7 @@ void expect_right(const World& world, std::uint64_t seed, int count = 12) {
     EXPECT_EQ(world.hash(), before);
 }
 
-/// Bodies of all kinds and populations between -5 and 5, two colliders on some, some of them sensors.
+/// Adds bodies of all kinds and motion states between -5 and 5; some have two colliders, some are sensors.
 std::vector<BodyId> fill(World& world, int count, std::uint64_t seed) {
     Random random(seed);
     std::vector<BodyId> bodies{add_ground(world)};
@@ -234,7 +234,7 @@ std::vector<BodyId> fill(World& world, int count, std::uint64_t seed) {
     return bodies;
 }
 
-TEST(Query, answers_as_a_loop_over_all_colliders_before_and_between_steps) {
+TEST(Query, matches_a_loop_over_all_colliders_before_and_between_steps) {
     World world = make_world();
     fill(world, 60, 1);
     expect_right(world, 1);
@@ -255,9 +255,9 @@ TEST(Query, finds_bodies_that_left_their_boxes_in_the_last_step) {
     for (int i = 0; i < 12; ++i) {
         run(world, 1.0 / 60);
         expect_right(world, static_cast<std::uint64_t>(100 + i), 6);
-        overhang = std::max(overhang, world.state().query.awake_overhang);
+        overhang = std::max(overhang, WorldStateAccess::of(world).query.awake_overhang);
     }
-    EXPECT_GT(overhang, 0) << "too few left their boxes to test that";
+    EXPECT_GT(overhang, 0) << "too few shapes left their boxes";
 }
 
 TEST(Query, finds_bodies_that_fell_asleep_in_full_motion) {
@@ -273,15 +273,15 @@ TEST(Query, finds_bodies_that_fell_asleep_in_full_motion) {
         run(world, 1.0 / 60);
         expect_right(world, static_cast<std::uint64_t>(200 + i), 6);
     }
-    EXPECT_FALSE(world.state().asleep.bodies.empty());
-    EXPECT_GT(world.state().query.asleep_overhang, 0);
-    // A world made from its bytes measures anew.
+    EXPECT_FALSE(WorldStateAccess::of(world).asleep.bodies.empty());
+    EXPECT_GT(WorldStateAccess::of(world).query.asleep_overhang, 0);
+    // A restored world measures the overhang again.
     World copy = make_world();
     ASSERT_TRUE(copy.restore(world.snapshot()));
     expect_right(copy, 300);
 }
 
-TEST(Query, answers_right_after_every_edit) {
+TEST(Query, is_right_after_every_edit) {
     World world = make_world();
     std::vector<BodyId> bodies = fill(world, 40, 4);
     run(world, 0.2);
@@ -312,7 +312,7 @@ TEST(Query, answers_right_after_every_edit) {
             }
             case 5: opened(world.set_kind(body, static_cast<BodyKind>(random.below(3)))); break;
             case 6: opened(world.set_mass(body, MassProperties{1, in_cube(random, 50), Mat3::identity()})); break;
-            case 7: {  // in the place of one that is gone
+            case 7: {  // reuses the slot of a removed body
                 opened(world.remove_body(body));
                 bodies[at] = add(world, {.kind = BodyKind::Static, .position = to_double(in_cube(random, 5))},
                                  any_shape(random));
@@ -342,7 +342,7 @@ TEST(Query, follows_the_fastest_bodies_through_edits) {
     for (const BodyId body : fast) ASSERT_TRUE(world.apply_force(body, {0, 4e5f, 0}));
     run(world, 1.0 / 60);
     expect_right(world, 1);
-    ASSERT_FALSE(world.state().query.outliers.empty());
+    ASSERT_FALSE(WorldStateAccess::of(world).query.outliers.empty());
     ASSERT_TRUE(world.set_pose(fast[0], {{1, 1, 1}, {}}));
     ASSERT_TRUE(world.remove_body(fast[1]));
     add(world, {.position = {-1, -1, -1}}, Box{});
@@ -350,45 +350,45 @@ TEST(Query, follows_the_fastest_bodies_through_edits) {
     expect_right(world, 2);
 }
 
-TEST(Query, asked_or_not_goes_on_to_the_same_bits) {
-    World asked = make_world(), silent = make_world();
-    for (World* world : {&asked, &silent}) add_pile(*world, 60);
+TEST(Query, does_not_change_the_simulation) {
+    World queried = make_world(), control = make_world();
+    for (World* world : {&queried, &control}) add_pile(*world, 60);
     for (int i = 0; i < 90; ++i) {
-        expect_right(asked, static_cast<std::uint64_t>(i), i % 10 == 0 ? 4 : 1);
+        expect_right(queried, static_cast<std::uint64_t>(i), i % 10 == 0 ? 4 : 1);
         if (i == 45)
-            for (World* world : {&asked, &silent}) add(*world, {.position = {0, 9, 0}}, Sphere{0.4f});
-        run(asked, 1.0 / 60);
-        run(silent, 1.0 / 60);
+            for (World* world : {&queried, &control}) add(*world, {.position = {0, 9, 0}}, Sphere{0.4f});
+        run(queried, 1.0 / 60);
+        run(control, 1.0 / 60);
     }
-    EXPECT_EQ(asked.hash(), silent.hash());
+    EXPECT_EQ(queried.hash(), control.hash());
 }
 
-TEST(Query, trees_stand_while_somebody_asks_and_come_back_later) {
+TEST(Query, trees_are_built_on_demand_and_freed_when_unused) {
     World world = make_world();
     fill(world, 60, 8);
     run(world, 0.1);
-    EXPECT_FALSE(world.state().query.kept) << "nobody asked yet";
+    EXPECT_FALSE(WorldStateAccess::of(world).query.built) << "no query yet";
     expect_right(world, 1);
     run(world, 0.5);
-    EXPECT_TRUE(world.state().query.kept);
-    EXPECT_TRUE(world.state().query.ready) << "the step brings them up to date";
+    EXPECT_TRUE(WorldStateAccess::of(world).query.built);
+    EXPECT_TRUE(WorldStateAccess::of(world).query.ready) << "the step updates them";
     expect_right(world, 2);
     run(world, 2);
-    EXPECT_FALSE(world.state().query.kept) << "nobody asked for two seconds";
+    EXPECT_FALSE(WorldStateAccess::of(world).query.built) << "no query for two seconds";
     expect_right(world, 3);
     run(world, 1.0 / 60);
     expect_right(world, 4);
 }
 
-TEST(Query, a_mass_given_far_away_leaves_boxes_around_their_shapes) {
+TEST(Query, a_distant_centre_of_mass_keeps_boxes_around_their_shapes) {
     Settings tight;
     tight.speculative_distance = 0;
     for (const BodyKind kind : {BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic}) {
         World world = make_world(tight);
         const BodyId body = add(world, {.kind = kind}, Box{{1, 1, 1}});
         ASSERT_TRUE(world.set_mass(body, MassProperties{1, {1.2e5f, 3.4e5f, 5.6e5f}, Mat3::diagonal({1, 2, 2.5f})}));
-        const Seen seen = all_of(world)[0];
-        EXPECT_TRUE(contains(world.state().boxes[0], bounds(*seen.shape, seen.pose)));
+        const Target target = all_of(world)[0];
+        EXPECT_TRUE(contains(WorldStateAccess::of(world).boxes[0], bounds(*target.shape, target.pose)));
     }
 }
 
@@ -401,14 +401,14 @@ TEST(Query, ties_go_to_the_smaller_index) {
     const auto hit = opened(cast_ray(world, {{0, 5, 0}, {0, -1, 0}}));
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->body, bodies[0]);
-    EXPECT_EQ(hit->at, 3.5f);
+    EXPECT_EQ(hit->distance, 3.5f);
     std::vector<NearHit> near;
     opened(nearest(world, {0, 5, 0}, 3, inf, {}, near));
     ASSERT_EQ(near.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(near[i].body, bodies[i]);
 }
 
-TEST(Query, hits_a_millimetre_apart_are_in_order_from_far_away) {
+TEST(Query, nearby_hits_are_sorted_at_large_distances) {
     World world = make_world();
     const BodyId behind = add(world, {.kind = BodyKind::Static, .position = {0, 0, 0}}, Box{{1, 1, 1}});
     const BodyId before = add(world, {.kind = BodyKind::Static, .position = {0, 0.0001, 0}}, Box{{1, 1, 1}});
@@ -419,7 +419,7 @@ TEST(Query, hits_a_millimetre_apart_are_in_order_from_far_away) {
     EXPECT_NEAR(hit->point.y, 1.0001, 1e-9);
 }
 
-TEST(Query, sees_what_its_filter_lets_it_see) {
+TEST(Query, applies_its_filter) {
     World world = make_world();
     const BodyId ghost = add(world, {.kind = BodyKind::Static, .position = {0, 5, 0}}, Sphere{0.5f},
                              {.filter = {.category = 0, .mask = 0}});
@@ -442,7 +442,7 @@ TEST(Query, sees_what_its_filter_lets_it_see) {
     EXPECT_EQ(first({.category = 1}), blue);
     EXPECT_EQ(first({.accepts = [&](BodyId body, ColliderId) { return body == blue; }}), blue);
     EXPECT_EQ(first({.accepts = [](BodyId, ColliderId) { return false; }}), BodyId{});
-    // An id that is stale ignores nobody, not even who has its place now.
+    // A stale id ignores nothing, not even the body that reuses its slot.
     ASSERT_TRUE(world.remove_body(ghost));
     const BodyId successor = add(world, {.kind = BodyKind::Static, .position = {0, 5, 0}}, Sphere{0.5f});
     ASSERT_EQ(successor.index, ghost.index);
@@ -457,7 +457,7 @@ TEST(Query, sees_what_its_filter_lets_it_see) {
     EXPECT_EQ(near[0].body, blue);
 }
 
-TEST(Query, boxes_may_be_flat_and_endless) {
+TEST(Query, accepts_flat_and_unbounded_boxes) {
     World world = make_world();
     const BodyId ground = add_ground(world);
     const BodyId box = add(world, {.kind = BodyKind::Static, .position = {0, 3, 0}}, Box{{1, 1, 1}});
@@ -476,7 +476,7 @@ TEST(Query, boxes_may_be_flat_and_endless) {
 }
 
 TEST(Query, batches_on_many_threads_equal_single_rays) {
-    std::vector<std::optional<RayHit>> answers[2];
+    std::vector<std::optional<RayHit>> results[2];
     Random random(9);
     std::vector<Ray> rays;
     for (int i = 0; i < 2000; ++i) rays.push_back(random_ray(random));
@@ -484,8 +484,8 @@ TEST(Query, batches_on_many_threads_equal_single_rays) {
         World world = make_world({}, {.threads = threads});
         fill(world, 100, 6);
         run(world, 0.1);
-        auto& out = answers[threads == 1 ? 0 : 1];
-        out.push_back(std::nullopt);  // what is in the buffer stays
+        auto& out = results[threads == 1 ? 0 : 1];
+        out.push_back(std::nullopt);  // existing elements of the buffer are kept
         opened(cast_rays(world, rays, {}, out));
         ASSERT_EQ(out.size(), rays.size() + 1);
         for (std::size_t i = 0; i < rays.size(); i += 7) {
@@ -496,15 +496,15 @@ TEST(Query, batches_on_many_threads_equal_single_rays) {
             }
         }
     }
-    for (std::size_t i = 0; i < answers[0].size(); ++i) {
-        ASSERT_EQ(answers[0][i].has_value(), answers[1][i].has_value());
-        if (answers[0][i]) {
-            EXPECT_EQ(answers[0][i]->point, answers[1][i]->point);
+    for (std::size_t i = 0; i < results[0].size(); ++i) {
+        ASSERT_EQ(results[0][i].has_value(), results[1][i].has_value());
+        if (results[0][i]) {
+            EXPECT_EQ(results[0][i]->point, results[1][i]->point);
         }
     }
 }
 
-TEST(Query, threads_may_ask_at_once_right_after_edits) {
+TEST(Query, is_thread_safe_right_after_edits) {
     World world = make_world();
     const std::vector<BodyId> bodies = fill(world, 200, 7);
     run(world, 0.1);

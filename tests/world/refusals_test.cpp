@@ -1,4 +1,4 @@
-// What a world refuses, and that a refusal changes nothing.
+// Calls that a world rejects, and that a rejected call changes nothing.
 #include <cmath>
 #include <limits>
 
@@ -23,7 +23,7 @@ protected:
         run(world, 0.1);
         before = world.hash();
     }
-    /// The call failed with that status, named where, and left the world as it was.
+    /// Expects that the call failed with this status, named the field, and left the world unchanged.
     template <class T> void expect_refused(const Result<T>& result, Status status, const char* field) {
         ASSERT_FALSE(result) << field;
         EXPECT_EQ(result.status(), status) << field;
@@ -64,7 +64,7 @@ TEST_F(Refusals, numbers_that_are_not_finite) {
     }
 }
 
-TEST_F(Refusals, sizes_masses_and_rotations_that_cannot_be) {
+TEST_F(Refusals, impossible_sizes_masses_and_rotations) {
     for (const float bad : {0.0f, -1.0f}) {
         expect_refused(world.add_body({}, Sphere{bad}), Status::BadArgument, "radius");
         expect_refused(world.add_body({}, Box{{1, bad, 1}}), Status::BadArgument, "half");
@@ -74,7 +74,7 @@ TEST_F(Refusals, sizes_masses_and_rotations_that_cannot_be) {
     expect_refused(world.add_body({}, Sphere{}, {.material = {.friction = -1}}), Status::BadArgument, "friction");
     expect_refused(world.add_body({.rotation = {0, 0, 0, 0}}), Status::BadArgument, "rotation");
     expect_refused(world.add_body({.rotation = {0, 0, 0, 1.5f}}), Status::BadArgument, "rotation");
-    // No solid has a moment larger than the sum of the other two.
+    // No rigid body has a moment larger than the sum of the other two.
     expect_refused(world.set_mass(box, MassProperties{1, {}, Mat3::diagonal({1, 1, 3})}), Status::BadArgument, "mass");
     expect_refused(world.set_mass(box, MassProperties{1, {}, Mat3::diagonal({1, -1, 1})}), Status::BadArgument, "mass");
     expect_refused(world.add_body({}, HalfSpace{}), Status::BadArgument, "half-space");
@@ -87,7 +87,7 @@ TEST_F(Refusals, sizes_masses_and_rotations_that_cannot_be) {
     expect_refused(world.apply_impulse(box, {3e38f, 3e38f, 3e38f}), Status::BadArgument, "impulse");
 }
 
-TEST_F(Refusals, a_rotation_that_is_almost_unit_is_normalised) {
+TEST_F(Refusals, a_rotation_of_almost_unit_length_is_normalised) {
     const auto body = world.add_body({.rotation = {0, 0, 0, 1.005f}});
     ASSERT_TRUE(body);
     EXPECT_EQ(state(world, *body).pose.rotation, Quat{});
@@ -97,7 +97,7 @@ TEST_F(Refusals, ids_that_are_stale_foreign_or_random) {
     World other = make_world();
     const BodyId foreign = add(other, {}, Sphere{});
     const BodyId removed = add(world, {.position = {50, 0, 0}}, Sphere{});
-    const ColliderId gone = world.colliders_of(removed)[0];
+    const ColliderId stale = world.colliders_of(removed)[0];
     ASSERT_TRUE(world.remove_body(removed));
     run(world, 0.1);
     const BodyId reused = add(world, {.position = {60, 0, 0}}, Sphere{});
@@ -122,8 +122,8 @@ TEST_F(Refusals, ids_that_are_stale_foreign_or_random) {
         expect_refused(world.exclude_pair(id, box), Status::BadHandle, "exclude_pair");
         EXPECT_TRUE(world.colliders_of(id).empty());
     }
-    expect_refused(world.collider(gone), Status::BadHandle, "collider");
-    expect_refused(world.remove_collider(gone), Status::BadHandle, "remove_collider");
+    expect_refused(world.collider(stale), Status::BadHandle, "collider");
+    expect_refused(world.remove_collider(stale), Status::BadHandle, "remove_collider");
 }
 
 TEST_F(Refusals, settings_out_of_range) {
@@ -139,7 +139,7 @@ TEST_F(Refusals, settings_out_of_range) {
     with([](Settings& s) { s.time_step = nan; }, "time_step");
     with([](Settings& s) { s.gravity.y = inf; }, "gravity");
     with([](Settings& s) { s.contact_frequency = -1; }, "contact_frequency");
-    with([](Settings& s) { s.max_pairs = -1; }, "most_pairs");
+    with([](Settings& s) { s.max_pairs = -1; }, "max_pairs");
     EXPECT_EQ(World::create({}, {.structure = "no_such_tree"}).status(), Status::BadArgument);
     EXPECT_NE(World::create({}, {.structure = "no_such_tree"}).error().text().find("dynamic_bvh"), std::string::npos);
     EXPECT_EQ(World::create({}, {.threads = -1}).status(), Status::BadArgument);
@@ -151,7 +151,7 @@ TEST_F(Refusals, a_step_of_no_time_moves_nothing) {
     EXPECT_EQ(state(world, box).pose.position, at);
 }
 
-TEST_F(Refusals, a_force_that_makes_a_speed_infinite_takes_only_its_body_out_of_play) {
+TEST_F(Refusals, a_force_that_makes_a_speed_infinite_quarantines_only_its_body) {
     World twin = make_world();
     add_ground(twin);
     add(twin, {.position = {0, 0.6, 0}}, Box{});
@@ -168,7 +168,7 @@ TEST_F(Refusals, a_force_that_makes_a_speed_infinite_takes_only_its_body_out_of_
     EXPECT_EQ(state(world, box).pose.position, state(twin, twin.bodies()[1]).pose.position);
 }
 
-TEST_F(Refusals, speeds_beyond_the_cap_are_held_and_counted) {
+TEST_F(Refusals, speeds_above_the_limit_are_clamped_and_counted) {
     ASSERT_TRUE(world.set_velocity(box, {1e6f, 1e6f, 0}, {0, 1e4f, 0}));
     const auto report = world.step();
     ASSERT_TRUE(report);
@@ -177,7 +177,7 @@ TEST_F(Refusals, speeds_beyond_the_cap_are_held_and_counted) {
     EXPECT_LE(length(state(world, box).angular_velocity), 1000.1f);
 }
 
-TEST_F(Refusals, coincident_bodies_beyond_the_limit_of_pairs_are_counted_not_fatal) {
+TEST_F(Refusals, pairs_beyond_the_limit_are_dropped_and_counted) {
     Settings settings;
     settings.max_pairs = 1000;
     World crowd = make_world(settings);
@@ -192,21 +192,21 @@ TEST_F(Refusals, coincident_bodies_beyond_the_limit_of_pairs_are_counted_not_fat
     EXPECT_EQ(again.hash(), crowd.hash());
 }
 
-TEST_F(Refusals, a_step_inside_a_step_is_refused) {
-    struct Nosy final : TaskRunner {
+TEST_F(Refusals, a_step_inside_a_step_is_rejected) {
+    struct SteppingRunner final : TaskRunner {
         World* world = nullptr;
-        Status seen = Status::Ok;
+        Status status = Status::Ok;
         void run(std::size_t count, const std::function<void(std::size_t)>& chunk) override {
-            if (world != nullptr) seen = world->step().status();
+            if (world != nullptr) status = world->step().status();
             for (std::size_t i = 0; i < count; ++i) chunk(i);
         }
         [[nodiscard]] int threads() const override { return 2; }
-    } nosy;
-    World inner = make_world({}, {.tasks = &nosy});
+    } runner;
+    World inner = make_world({}, {.tasks = &runner});
     add_pile(inner, 200);
-    nosy.world = &inner;
+    runner.world = &inner;
     run(inner, 1);
-    EXPECT_EQ(nosy.seen, Status::Busy);
+    EXPECT_EQ(runner.status, Status::Busy);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Who sleeps, what wakes whom, and what sleep costs.
+// Sleep: what falls asleep, what wakes it, and what a sleeping world costs.
 #include "tests/world/worlds.hpp"
 
 namespace fase {
@@ -50,7 +50,7 @@ TEST(Sleep, a_moved_support_wakes_what_stood_on_it) {
     ASSERT_TRUE(t.world.set_pose(t.plate, {{0, -1, 0}, {}}));
     EXPECT_TRUE(t.all_awake());
 }
-TEST(Sleep, a_kinematic_body_that_comes_wakes_what_it_touches) {
+TEST(Sleep, an_approaching_kinematic_body_wakes_what_it_touches) {
     Tower t;
     const BodyId pusher = add(t.world, {.kind = BodyKind::Kinematic, .position = {-3, 3, 0}}, Box{{0.5f, 2, 0.5f}});
     run(t.world, 0.5);
@@ -63,13 +63,13 @@ TEST(Sleep, a_new_obstacle_wakes_what_it_overlaps) {
     add(t.world, {.kind = BodyKind::Static, .position = {0.8, 3, 0}}, Box{{0.5f, 0.5f, 0.5f}});
     EXPECT_TRUE(t.all_awake());
 }
-TEST(Sleep, a_far_body_wakes_nobody) {
+TEST(Sleep, a_distant_body_wakes_nothing) {
     Tower t;
     add(t.world, {.position = {20, 5, 0}}, Sphere{});
     for (int i = 0; i < 100; ++i) ASSERT_TRUE(t.world.step());
     for (const BodyId box : t.boxes) EXPECT_FALSE(state(t.world, box).awake);
 }
-TEST(Sleep, a_sleeping_world_asks_for_no_pairs_and_solves_nothing) {
+TEST(Sleep, a_sleeping_world_queries_no_pairs_and_solves_nothing) {
     Tower t;
     const std::uint64_t before = t.world.hash();
     ASSERT_TRUE(t.world.step());
@@ -78,7 +78,7 @@ TEST(Sleep, a_sleeping_world_asks_for_no_pairs_and_solves_nothing) {
     EXPECT_EQ(report.pairs, 0u);
     EXPECT_EQ(report.candidates, 0u);
     EXPECT_EQ(report.manifolds, 0u);
-    EXPECT_NE(t.world.hash(), before);  // time went on
+    EXPECT_NE(t.world.hash(), before);  // time advanced
 }
 TEST(Sleep, a_body_that_may_not_sleep_keeps_its_island_awake) {
     World world = make_world();
@@ -90,7 +90,7 @@ TEST(Sleep, a_body_that_may_not_sleep_keeps_its_island_awake) {
     EXPECT_TRUE(state(world, below).awake);
     EXPECT_FALSE(state(world, alone).awake);
 }
-TEST(Sleep, a_world_that_must_not_sleep_does_not) {
+TEST(Sleep, a_world_without_sleep_stays_awake) {
     Settings settings;
     settings.sleep = false;
     World world = make_world(settings);

@@ -92,7 +92,7 @@ TEST(Theory, a_sliding_ball_comes_to_roll_at_five_sevenths_of_its_speed) {
     EXPECT_NEAR(s.angular_velocity.z, -10, 0.02);  // v = ω r
 }
 
-TEST(Theory, a_stack_of_twenty_boxes_stands_still_and_falls_asleep_within_three_seconds) {
+TEST(Theory, a_stack_of_twenty_boxes_is_stable_and_falls_asleep_within_three_seconds) {
     World world = make_world();
     add_ground(world);
     std::vector<BodyId> boxes;
@@ -178,7 +178,7 @@ TEST(Theory, the_tennis_racket_flips_when_the_euler_equations_say) {
         ASSERT_TRUE(world.step());
         const BodyState s = state(world, body);
         const float now = rotate_back(s.pose.rotation, s.angular_velocity).y;
-        // The moment of the flip lies between the two steps, in proportion.
+        // Interpolate the time of the flip between the two steps.
         if ((last > 0) != (now > 0)) flips.push_back((i + double(last / (last - now))) / 60);
         last = now;
     }
@@ -223,12 +223,12 @@ TEST(Theory, a_rolled_pile_never_gains_energy) {
                    (9.81 * b.centre.y + 0.5 * static_cast<double>(length_squared(b.linear_velocity)));
         return sum;
     };
-    double most = energy();
+    double bound = energy();
     for (int i = 0; i < 400; ++i) {
         ASSERT_TRUE(world.step());
         const double now = energy();
-        ASSERT_LT(now, most * 1.01) << "step " << i;
-        most = std::min(most, std::max(now, most * 0.99));
+        ASSERT_LT(now, bound * 1.01) << "step " << i;
+        bound = std::min(bound, std::max(now, bound * 0.99));
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Small worlds that several tests need.
+/// Worlds and helpers that several tests share.
 #include <gtest/gtest.h>
 
 #include "fase/core/random.hpp"
@@ -8,25 +8,25 @@
 
 namespace fase::test {
 
-/// A world, or the test fails.
+/// Creates a world; the test fails on an error.
 inline World make_world(const Settings& settings = {}, const Setup& setup = {}) {
     auto world = World::create(settings, setup);
     EXPECT_TRUE(world) << (world ? "" : world.error().text());
     return std::move(*world);
 }
-/// What a call gives, or the test fails.
+/// Unwraps a result; the test fails on an error.
 template <class T> T opened(Result<T> result) {
     EXPECT_TRUE(result) << (result ? "" : result.error().text());
     return result ? *result : T{};
 }
 inline void opened(const Result<void>& result) { EXPECT_TRUE(result) << (result ? "" : result.error().text()); }
-/// A body, or the test fails.
+/// Adds a body; the test fails on an error.
 inline BodyId add(World& world, const BodyDef& def, const Shape& shape, const ColliderDef& collider = {}) {
     const auto body = world.add_body(def, shape, collider);
     EXPECT_TRUE(body) << (body ? "" : body.error().text());
     return body ? *body : BodyId{};
 }
-/// Ground whose surface is y = 0.
+/// Adds a ground plane at y = 0.
 inline BodyId add_ground(World& world, const Material& material = {}) {
     return add(world, {.kind = BodyKind::Static}, HalfSpace{}, {.material = material});
 }
@@ -49,18 +49,18 @@ inline Quat random_rotation(Random& random) {
     } while (length_squared(q) < 0.1f || length_squared(q) > 1);
     return normalized(q);
 }
-/// The frustum whose six planes are the sides of a turned box.
-inline Frustum box_frustum(Vec3d centre, Quat turned, Vec3d half) {
+/// Returns a frustum whose six planes are the sides of a rotated box.
+inline Frustum box_frustum(Vec3d centre, Quat rotation, Vec3d half) {
     Frustum frustum;
     for (int i = 0; i < 6; ++i) {
         Vec3d axis;
         axis[i / 2] = i % 2 == 0 ? -1 : 1;
-        const Vec3d normal = rotate(normalized(to_double(turned)), axis);
+        const Vec3d normal = rotate(normalized(to_double(rotation)), axis);
         frustum.sides[static_cast<std::size_t>(i)] = {normal, dot(normal, centre) + half[i / 2]};
     }
     return frustum;
 }
-/// A pile of `count` boxes, spheres, capsules and cylinders that fall onto ground: all kinds of contacts.
+/// Adds a pile of `count` boxes, spheres, capsules and cylinders that fall onto a ground plane: all kinds of contacts.
 inline void add_pile(World& world, int count, std::uint64_t seed = 1) {
     add_ground(world);
     Random random(seed);

@@ -1,5 +1,5 @@
 #pragma once
-/// The state of all bodies as flat arrays, and the one table that describes them.
+/// The state of all bodies as flat arrays.
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace fase::dynamics {
 
-/// What of a body changes rarely.
+/// The properties of a body that change rarely.
 struct BodyTraits {
     BodyKind kind = BodyKind::Static;
     MotionState motion_state = MotionState::Static;
@@ -25,39 +25,39 @@ struct BodyTraits {
     float gravity_scale = 1;
     float inverse_mass = 0;
     Vec3 inverse_moments;    ///< principal, 1 / (kg m²)
-    float reach = 0;         ///< metres from the centre of mass to the farthest point of its colliders
-    float inner_radius = 0;  ///< the smallest inner radius of its colliders
+    float reach = 0;         ///< metres from the centre of mass to the farthest point of the colliders
+    float inner_radius = 0;  ///< the smallest inner radius of the colliders, metres
     LocalPose principal;     ///< centre of mass and principal axes in the body's frame
     std::uint32_t first_collider = no_index;
     std::uint64_t user = 0;
     MassProperties mass;  ///< in the body's frame
 };
 
-/// A body's place and motion: `position` is the centre of mass, `rotation` turns the principal axes to the world.
+/// Pose and velocity of a body: `position` is the centre of mass, `rotation` maps the principal axes to the world.
 struct BodyMotion {
     Vec3d position;
     Quat rotation;
     Vec3 linear_velocity;
     Vec3 angular_velocity;
-    float sleep_time = 0;             ///< seconds below the sleep speeds and within the slop of one place
-    Vec3 drift;                       ///< metres moved since sleep_time began
-    Vec3 turn;                        ///< radians turned since then
-    std::uint32_t island = no_index;  ///< least body index of its island as of the last step
+    float sleep_time = 0;             ///< seconds below the sleep speeds and within Settings::sleep_distance
+    Vec3 drift;                       ///< metres moved since the current sleep span began
+    Vec3 turn;                        ///< radians rotated since then
+    std::uint32_t island = no_index;  ///< smallest body index of its island in the last step
 };
 
-/// Forces that act through the next step.
+/// Forces and torques that act during the next step.
 struct BodyForces {
     Vec3 force;
     Vec3 torque;
 };
 
-/// Index of all three arrays: the body's slot.
+/// The three arrays have the same index: the slot of the body.
 struct Bodies {
     std::vector<BodyTraits> traits;
     std::vector<BodyMotion> motion;
     std::vector<BodyForces> forces;
 
-    /// Calls f(name, vector) for each array: packing, snapshots and hashes are made from this table.
+    /// Calls f(name, vector) for each array.
     template <class F> void for_each_field(F&& f) {
         f("traits", traits);
         f("motion", motion);
@@ -70,7 +70,7 @@ struct Bodies {
     }
 };
 
-/// The pose of the body's own frame.
+/// Returns the pose of the body's frame.
 [[nodiscard]] inline Pose body_pose(const BodyTraits& traits, const BodyMotion& motion) {
     return Pose{motion.position, motion.rotation} * inverse(traits.principal);
 }

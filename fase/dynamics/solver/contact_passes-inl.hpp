@@ -1,11 +1,9 @@
-/// The passes over blocks of contacts, written once for any lane type V (math/detail/lane.hpp,
-/// math/detail/wide-inl.hpp). Included inside the namespace of each target, hence no #pragma once and no includes.
+/// The solver passes over blocks of contacts, as templates over the lane type V (math/detail/lane.hpp,
+/// math/detail/wide-inl.hpp). Included inside the namespace of each target, so no #pragma once and no includes.
+/// Functions take a block `k` and the first lane `s` of V in it. The order of the operations is part of the results.
 /// Source of the soft step: Catto 2024, Solver2D (small steps, relax, restitution last); of the soft constraint: Catto
 /// 2011.
 
-#ifndef FASE_LAMBDA_INLINE
-#define FASE_LAMBDA_INLINE __attribute__((always_inline))
-#endif
 #ifndef FASE_INLINE
 #define FASE_INLINE inline __attribute__((always_inline))
 #endif
@@ -30,15 +28,43 @@ template <class V> FASE_INLINE Vec<V> operator*(const Symmetric<V>& m, Vec<V> v)
 template <class V> FASE_INLINE Vec<V> load3(const float (*rows)[8], int lane) {
     return {V::load(rows[0] + lane), V::load(rows[1] + lane), V::load(rows[2] + lane)};
 }
-/// The inverse rotation of `n` by the quaternion (q, w), less n.
-template <class V> FASE_INLINE Vec<V> turned_back_less(Vec<V> q, V w, Vec<V> n) {
+/// Returns R⁻¹ n - n for the rotation R = (q, w).
+template <class V> FASE_INLINE Vec<V> inverse_rotation_delta(Vec<V> q, V w, Vec<V> n) {
     return cross(q, cross(q, n) - n * w) * V::set(2.0f);
 }
+
+/// The contact frame of each lane: the unit normal, two unit tangents, and the offsets from the two centres of mass to
+/// the centre of the manifold.
+template <class V> struct Frame {
+    Vec<V> n, t1, t2, ca, cb;
+
+    static FASE_INLINE Frame load(const ContactBlock& k, int s) {
+        const Vec<V> n = load3<V>(k.normal, s), t1 = load3<V>(k.tangent, s);
+        return {n, t1, cross(n, t1), load3<V>(k.offset_a, s), load3<V>(k.offset_b, s)};
+    }
+};
+
+/// Inverse inertia tensors (world axes) and inverse masses of the two bodies of each lane.
+template <class V> struct Inertia {
+    Symmetric<V> a, b;
+    V mass_a, mass_b;
+
+    FASE_INLINE void gather(const SolverMass* masses, const std::uint32_t* rows_a, const std::uint32_t* rows_b) {
+        const float* base = reinterpret_cast<const float*>(masses);
+        V row[8];
+        V::gather8(base, rows_a, 8, row);
+        a = {row[0], row[1], row[2], row[3], row[4], row[5]};
+        mass_a = row[6];
+        V::gather8(base, rows_b, 8, row);
+        b = {row[0], row[1], row[2], row[3], row[4], row[5]};
+        mass_b = row[6];
+    }
+};
 
 /// Velocities of the two bodies of each lane.
 template <class V> struct Velocities {
     Vec<V> va, wa, vb, wb;
-    V mass_a, mass_b, rest_a, rest_b;  // inverse masses ride along in the rows
+    V mass_a, mass_b, rest_a, rest_b;  // the rows also contain the inverse masses and unused floats
 
     FASE_INLINE void gather(const SolverBody* bodies, const std::uint32_t* a, const std::uint32_t* b) {
         V row[8];
@@ -64,92 +90,139 @@ template <class V> struct Velocities {
         const V row[8] = {vb.x, vb.y, vb.z, mass_b, wb.x, wb.y, wb.z, rest_b};
         V::scatter8(base, b, 16, row);
     }
-    /// Applies the impulse `p` at the manifold's centre and the torque impulse `turn`, to b and reversed to a.
+    /// Applies the impulse `p` at the centre of the manifold and the angular impulse `turn` to b, and the opposite to
+    /// a.
     template <bool one_sided>
-    FASE_INLINE void apply(Vec<V> p, Vec<V> turn, Vec<V> ca, Vec<V> cb, const Symmetric<V>& ia,
-                           const Symmetric<V>& ib) {
+    FASE_INLINE void apply(Vec<V> p, Vec<V> turn, const Frame<V>& f, const Inertia<V>& inertia) {
         if constexpr (!one_sided) {
             va = va - p * mass_a;
-            wa = wa - ia * (cross(ca, p) + turn);
+            wa = wa - inertia.a * (cross(f.ca, p) + turn);
         }
         vb = vb + p * mass_b;
-        wb = wb + ib * (cross(cb, p) + turn);
+        wb = wb + inertia.b * (cross(f.cb, p) + turn);
+    }
+    /// Returns the velocity of b relative to a at the centre of the manifold.
+    FASE_INLINE Vec<V> relative(const Frame<V>& f) const { return vb + cross(wb, f.cb) - va - cross(wa, f.ca); }
+};
+
+/// A quantity that is affine in the tangent coordinates of a point: centre + x slope_x + y slope_y.
+template <class V> struct Affine {
+    V centre, slope_x, slope_y;
+
+    FASE_INLINE V at(V x, V y) const { return centre + x * slope_x + y * slope_y; }
+    /// Returns `start` plus the quantity, added from left to right.
+    FASE_INLINE V add_to(V start, V x, V y) const { return start + centre + x * slope_x + y * slope_y; }
+};
+
+/// Returns the relative velocity along the normal, positive when the bodies separate.
+template <class V> FASE_INLINE Affine<V> normal_velocity(const Frame<V>& f, const Velocities<V>& u) {
+    const Vec<V> relative = u.relative(f), spin = u.wb - u.wa;
+    return {dot(f.n, relative), V::set(0.0f) - dot(f.t2, spin), dot(f.t1, spin)};
+}
+
+/// Returns the change of the separation when the centre of b moves by `moved` relative to a, and the bodies rotate by
+/// (qa, wa) and (qb, wb).
+template <class V>
+FASE_INLINE Affine<V> separation_change(const Frame<V>& f, Vec<V> moved, Vec<V> qa, V wa, Vec<V> qb, V wb) {
+    const Vec<V> ea = inverse_rotation_delta(qa, wa, f.n), eb = inverse_rotation_delta(qb, wb, f.n), e = eb - ea;
+    return {dot(f.n, moved) + dot(eb, f.cb) - dot(ea, f.ca), dot(e, f.t1), dot(e, f.t2)};
+}
+
+/// The symmetric 3 x 3 matrix by which normal impulses change the normal velocity.
+template <class V> struct Coupling {
+    V m00, m01, m02, m11, m12, m22;
+
+    static FASE_INLINE Coupling load(const ContactBlock& k, int s) {
+        return {V::load(k.coupling[0] + s), V::load(k.coupling[1] + s), V::load(k.coupling[2] + s),
+                V::load(k.coupling[3] + s), V::load(k.coupling[4] + s), V::load(k.coupling[5] + s)};
+    }
+    FASE_INLINE void store(ContactBlock& k, int s) const {
+        m00.store(k.coupling[0] + s);
+        m01.store(k.coupling[1] + s);
+        m02.store(k.coupling[2] + s);
+        m11.store(k.coupling[3] + s);
+        m12.store(k.coupling[4] + s);
+        m22.store(k.coupling[5] + s);
     }
 };
 
+/// Returns the coupling of the normal impulses; `sum` is the sum of the inverse inertia tensors, `mass` that of the
+/// inverse masses.
 template <class V>
-FASE_INLINE Symmetric<V> gather_inertia(const SolverMass* masses, const std::uint32_t* rows, V* inverse_mass) {
-    V row[8];
-    V::gather8(reinterpret_cast<const float*>(masses), rows, 8, row);
-    *inverse_mass = row[6];
-    return {row[0], row[1], row[2], row[3], row[4], row[5]};
+FASE_INLINE Coupling<V> normal_coupling(const Frame<V>& f, const Inertia<V>& inertia, const Symmetric<V>& sum, V mass) {
+    const V zero = V::set(0.0f);
+    const Vec<V> ja = cross(f.ca, f.n), jb = cross(f.cb, f.n);
+    const Vec<V> ija = inertia.a * ja, ijb = inertia.b * jb, ij = ija + ijb;
+    const Vec<V> sum_t1 = sum * f.t1, sum_t2 = sum * f.t2;
+    return {mass + dot(ja, ija) + dot(jb, ijb), zero - dot(f.t2, ij), dot(f.t1, ij), dot(f.t2, sum_t2),
+            zero - dot(f.t1, sum_t2),           dot(f.t1, sum_t1)};
 }
 
-/// Fills in what follows from the frozen manifold and the bodies as they stand at the begin of the step.
-template <class V> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
+/// Stores effective mass, separation, approach speed and lever arm of each point.
+template <class V>
+FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, const Affine<V>& separation,
+                                const Affine<V>& velocity) {
     const V zero = V::set(0.0f), one = V::set(1.0f);
-    V ma, mb;
-    const Symmetric<V> ia = gather_inertia<V>(in.masses, k.a + s, &ma);
-    const Symmetric<V> ib = gather_inertia<V>(in.masses, k.b + s, &mb);
-    Velocities<V> u;
-    u.gather(in.bodies, k.a + s, k.b + s);
-    const Vec<V> n = load3<V>(k.normal, s), t1 = load3<V>(k.tangent, s), t2 = cross(n, t1);
-    const Vec<V> ca = load3<V>(k.offset_a, s), cb = load3<V>(k.offset_b, s), shift = load3<V>(k.shift, s);
-
-    // Separations as of now: the manifold moved with its bodies since it was made.
-    const Vec<V> ea = turned_back_less(load3<V>(k.turn_a, s), V::load(k.turn_a[3] + s), n);
-    const Vec<V> eb = turned_back_less(load3<V>(k.turn_b, s), V::load(k.turn_b[3] + s), n);
-    const Vec<V> e = eb - ea;
-    const V base = dot(n, shift) + dot(eb, cb) - dot(ea, ca), e1 = dot(e, t1), e2 = dot(e, t2);
-
-    const Vec<V> ja = cross(ca, n), jb = cross(cb, n), ija = ia * ja, ijb = ib * jb, ij = ija + ijb;
-    const Symmetric<V> sum{ia.xx + ib.xx, ia.xy + ib.xy, ia.xz + ib.xz, ia.yy + ib.yy, ia.yz + ib.yz, ia.zz + ib.zz};
-    const V mass = ma + mb;
-    const Vec<V> sum_t1 = sum * t1, sum_t2 = sum * t2, sum_n = sum * n;
-    const V m00 = mass + dot(ja, ija) + dot(jb, ijb), m01 = zero - dot(t2, ij), m02 = dot(t1, ij);
-    const V m11 = dot(t2, sum_t2), m12 = zero - dot(t1, sum_t2), m22 = dot(t1, sum_t1);
-    m00.store(k.coupling[0] + s);
-    m01.store(k.coupling[1] + s);
-    m02.store(k.coupling[2] + s);
-    m11.store(k.coupling[3] + s);
-    m12.store(k.coupling[4] + s);
-    m22.store(k.coupling[5] + s);
-
-    const Vec<V> rel = u.vb + cross(u.wb, cb) - u.va - cross(u.wa, ca), spin = u.wb - u.wa;
-    const V q0 = dot(n, rel), q1 = zero - dot(t2, spin), q2 = dot(t1, spin);
     for (int i = 0; i < 4; ++i) {
         const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s), present = V::load(k.point_mass[i] + s);
         const V two_x = x + x, two_y = y + y;
-        const V mass_here = m00 + two_x * m01 + two_y * m02 + x * x * m11 + y * y * m22 + two_x * y * m12;
+        const V mass_here = m.m00 + two_x * m.m01 + two_y * m.m02 + x * x * m.m11 + y * y * m.m22 + two_x * y * m.m12;
         const V inverse = select_greater(mass_here, zero, one / mass_here, zero);
         select_greater(present, zero, inverse, zero).store(k.point_mass[i] + s);
-        (V::load(k.separation[i] + s) + base + x * e1 + y * e2).store(k.separation[i] + s);
-        (zero - (q0 + x * q1 + y * q2)).store(k.approach[i] + s);
+        separation.add_to(V::load(k.separation[i] + s), x, y).store(k.separation[i] + s);
+        (zero - velocity.at(x, y)).store(k.approach[i] + s);
         sqrt_of(x * x + y * y).store(k.lever[i] + s);
     }
+}
 
-    const Vec<V> a1 = cross(ca, t1), a2 = cross(ca, t2), b1 = cross(cb, t1), b2 = cross(cb, t2);
-    const Vec<V> ia1 = ia * a1, ia2 = ia * a2, ib1 = ib * b1, ib2 = ib * b2;
+/// Stores the effective masses of tangential friction and of the twist about the normal. `sum` and `mass` as in
+/// normal_coupling().
+template <class V>
+FASE_INLINE void prepare_friction(ContactBlock& k, int s, const Frame<V>& f, const Inertia<V>& inertia,
+                                  const Symmetric<V>& sum, V mass) {
+    const V zero = V::set(0.0f), one = V::set(1.0f);
+    const Vec<V> a1 = cross(f.ca, f.t1), a2 = cross(f.ca, f.t2), b1 = cross(f.cb, f.t1), b2 = cross(f.cb, f.t2);
+    const Vec<V> ia1 = inertia.a * a1, ia2 = inertia.a * a2, ib1 = inertia.b * b1, ib2 = inertia.b * b2;
     const V k11 = mass + dot(a1, ia1) + dot(b1, ib1), k22 = mass + dot(a2, ia2) + dot(b2, ib2);
     const V k12 = dot(a1, ia2) + dot(b1, ib2), det = k11 * k22 - k12 * k12;
     const V inverse = select_greater(det, zero, one / det, zero);
     (k22 * inverse).store(k.friction_mass[0] + s);
     (zero - k12 * inverse).store(k.friction_mass[1] + s);
     (k11 * inverse).store(k.friction_mass[2] + s);
-    const V twist = dot(n, sum_n);
+    const Vec<V> sum_n = sum * f.n;
+    const V twist = dot(f.n, sum_n);
     select_greater(twist, zero, one / twist, zero).store(k.twist_mass + s);
-    dot(n, ia1 + ib1).store(k.twist_coupling[0] + s);
-    dot(n, ia2 + ib2).store(k.twist_coupling[1] + s);
+    dot(f.n, ia1 + ib1).store(k.twist_coupling[0] + s);
+    dot(f.n, ia2 + ib2).store(k.twist_coupling[1] + s);
 }
 
-/// Starts with the impulses of the last step.
-template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
-    V ignored;
-    const Symmetric<V> ia = gather_inertia<V>(in.masses, k.a + s, &ignored);
-    const Symmetric<V> ib = gather_inertia<V>(in.masses, k.b + s, &ignored);
+/// Computes all values of the block that depend on the manifold and on the bodies at the beginning of the step.
+template <class V> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s);
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
-    const Vec<V> n = load3<V>(k.normal, s), t1 = load3<V>(k.tangent, s), t2 = cross(n, t1);
+    const Frame<V> f = Frame<V>::load(k, s);
+    const Symmetric<V>&ia = inertia.a, &ib = inertia.b;
+    const Symmetric<V> sum{ia.xx + ib.xx, ia.xy + ib.xy, ia.xz + ib.xz, ia.yy + ib.yy, ia.yz + ib.yz, ia.zz + ib.zz};
+    const V mass = inertia.mass_a + inertia.mass_b;
+    const Coupling<V> coupling = normal_coupling(f, inertia, sum, mass);
+    coupling.store(k, s);
+    // The manifold may be older than the step: its separations have changed since.
+    const Affine<V> separation =
+        separation_change(f, load3<V>(k.shift, s), load3<V>(k.turn_a, s), V::load(k.turn_a[3] + s),
+                          load3<V>(k.turn_b, s), V::load(k.turn_b[3] + s));
+    prepare_points(k, s, coupling, separation, normal_velocity(f, u));
+    prepare_friction(k, s, f, inertia, sum, mass);
+}
+
+/// Applies the impulses of the last step.
+template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s);
+    Velocities<V> u;
+    u.gather(in.bodies, k.a + s, k.b + s);
+    const Frame<V> f = Frame<V>::load(k, s);
     V sum = V::set(0.0f), sx = sum, sy = sum;
     for (int i = 0; i < 4; ++i) {
         const V impulse = V::load(k.impulse[i] + s);
@@ -157,120 +230,163 @@ template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s,
         sx = sx + V::load(k.x[i] + s) * impulse;
         sy = sy + V::load(k.y[i] + s) * impulse;
     }
-    const Vec<V> p = n * sum + t1 * V::load(k.friction_impulse[0] + s) + t2 * V::load(k.friction_impulse[1] + s);
-    const Vec<V> turn = t1 * sy - t2 * sx + n * V::load(k.twist_impulse + s);
-    u.template apply<one_sided>(p, turn, load3<V>(k.offset_a, s), load3<V>(k.offset_b, s), ia, ib);
+    const Vec<V> p = f.n * sum + f.t1 * V::load(k.friction_impulse[0] + s) + f.t2 * V::load(k.friction_impulse[1] + s);
+    const Vec<V> turn = f.t1 * sy - f.t2 * sx + f.n * V::load(k.twist_impulse + s);
+    u.template apply<one_sided>(p, turn, f, inertia);
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 
-/// Friction takes this part of its correction a pass: the rest follows in the next ones, and neighbours in a wall do
-/// not overshoot each other.
+/// Returns the change of the separation since the beginning of the step, from the current poses of the bodies.
+template <class V>
+FASE_INLINE Affine<V> current_separation_change(const Frame<V>& f, const SolverBody* bodies,
+                                                const std::uint32_t* rows_a, const std::uint32_t* rows_b) {
+    V a[8], b[8];
+    const float* poses = reinterpret_cast<const float*>(bodies) + 8;
+    V::gather8(poses, rows_a, 16, a);
+    V::gather8(poses, rows_b, 16, b);
+    const Vec<V> moved = Vec<V>{b[0], b[1], b[2]} - Vec<V>{a[0], a[1], a[2]};
+    return separation_change(f, moved, Vec<V>{a[4], a[5], a[6]}, a[7], Vec<V>{b[4], b[5], b[6]}, b[7]);
+}
+
+/// The points of each lane's manifold in one pass. An impulse is corrected by -mass (scale v + bias) - decay impulse,
+/// where v is the normal velocity.
+template <class V> struct Points {
+    V impulse[4], x[4], y[4], mass[4], bias[4], scale[4], decay[4];
+
+    template <bool biased>
+    FASE_INLINE void load(const ContactBlock& k, int s, const PassInput& in, const Affine<V>& separation_change) {
+        const V zero = V::set(0.0f), one = V::set(1.0f), rate = V::set(1.0f / in.sub_step);
+        const V bias_rate = V::set(in.softness.mass_scale * in.softness.bias_rate);
+        const V mass_scale = V::set(in.softness.mass_scale), impulse_scale = V::set(in.softness.impulse_scale);
+        const V fastest_out = V::set(-in.push_out_speed);
+        for (int i = 0; i < 4; ++i) {
+            x[i] = V::load(k.x[i] + s);
+            y[i] = V::load(k.y[i] + s);
+            mass[i] = V::load(k.point_mass[i] + s);
+            impulse[i] = V::load(k.impulse[i] + s);
+            const V separation = separation_change.add_to(V::load(k.separation[i] + s), x[i], y[i]);
+            if constexpr (biased) {
+                const V push_out = max_of(bias_rate * separation, fastest_out);
+                bias[i] = select_greater(separation, zero, separation * rate, push_out);
+                scale[i] = select_greater(separation, zero, one, mass_scale);
+                decay[i] = select_greater(separation, zero, zero, impulse_scale);
+            } else {
+                bias[i] = max_of(separation, zero) * rate;
+                scale[i] = one;
+                decay[i] = zero;
+            }
+        }
+    }
+};
+
+/// Solves the normal impulses of the points by Gauss-Seidel. The impulses change the normal velocity only through the
+/// 3 x 3 coupling, so the bodies are updated once at the end.
+template <class V> struct NormalSolver {
+    Points<V> points;
+    Affine<V> velocity;
+    Coupling<V> coupling;
+    V sum, sum_x, sum_y;  // added impulse and its first moments in the tangent frame
+
+    /// Returns scale v + bias of point i.
+    FASE_INLINE V error(int i) const {
+        return points.scale[i] * velocity.at(points.x[i], points.y[i]) + points.bias[i];
+    }
+    /// Sets the impulse of point i to `target`, clamped to 0 or more, and updates the normal velocity.
+    FASE_INLINE void set_impulse(int i, V target) {
+        const V zero = V::set(0.0f);
+        const V next = select_greater(points.mass[i], zero, max_of(target, zero), zero);
+        const V d = next - points.impulse[i], dx = points.x[i] * d, dy = points.y[i] * d;
+        points.impulse[i] = next;
+        sum = sum + d;
+        sum_x = sum_x + dx;
+        sum_y = sum_y + dy;
+        velocity.centre = velocity.centre + (coupling.m00 * d + coupling.m01 * dx + coupling.m02 * dy);
+        velocity.slope_x = velocity.slope_x + (coupling.m01 * d + coupling.m11 * dx + coupling.m12 * dy);
+        velocity.slope_y = velocity.slope_y + (coupling.m02 * d + coupling.m12 * dx + coupling.m22 * dy);
+    }
+    /// First corrects all points by one common velocity, so that an even load stays even; then each point in turn.
+    FASE_INLINE void solve() {
+        const V zero = V::set(0.0f);
+        V mass_sum = zero, residual = zero, scaled = zero, decayed = zero;
+        for (int i = 0; i < 4; ++i) {
+            mass_sum = mass_sum + points.mass[i];
+            residual = residual + (points.mass[i] * error(i) + points.decay[i] * points.impulse[i]);
+            scaled = scaled + points.mass[i] * points.scale[i];
+            decayed = decayed + points.mass[i] * points.decay[i];
+        }
+        sum = sum_x = sum_y = zero;
+        const V stiffness = mass_sum * (scaled * coupling.m00) + decayed;
+        const V together = select_greater(stiffness, zero, residual / stiffness, zero);
+        for (int i = 0; i < 4; ++i) set_impulse(i, points.impulse[i] - points.mass[i] * together);
+        for (int i = 0; i < 4; ++i)
+            set_impulse(i, points.impulse[i] - points.mass[i] * error(i) - points.decay[i] * points.impulse[i]);
+    }
+};
+
+/// The friction limits of each lane, before the coefficient of friction.
+template <class V> struct NormalLoad {
+    V total;  // sum of the normal impulses
+    V twist;  // sum of the normal impulses times their lever arms
+};
+
+/// Stores the normal impulses of the points, and returns their load for friction.
+template <class V> FASE_INLINE NormalLoad<V> store_impulses(ContactBlock& k, int s, const Points<V>& points) {
+    NormalLoad<V> load{V::set(0.0f), V::set(0.0f)};
+    for (int i = 0; i < 4; ++i) {
+        points.impulse[i].store(k.impulse[i] + s);
+        load.total = load.total + points.impulse[i];
+        load.twist = load.twist + points.impulse[i] * V::load(k.lever[i] + s);
+    }
+    return load;
+}
+
+/// Each pass applies this share of the friction correction; later passes apply the rest. It keeps neighbouring contacts
+/// in a wall from overshooting each other.
 constexpr float friction_gain = 0.7f;
 
-/// One Gauss-Seidel pass. `biased`: soft, pushes overlap out; otherwise it relaxes: hard, and with friction.
+/// Solves friction at the centre of the manifold: first the twist about the normal, then both tangents together inside
+/// the friction cone.
+template <class V, bool one_sided>
+FASE_INLINE void solve_friction(ContactBlock& k, int s, const Frame<V>& f, const Inertia<V>& inertia,
+                                const NormalLoad<V>& load, Velocities<V>& u) {
+    const V zero = V::set(0.0f), one = V::set(1.0f), mu = V::load(k.friction + s), gain = V::set(friction_gain);
+    const Vec<V> relative = u.relative(f), spin = u.wb - u.wa;
+    const V old_twist = V::load(k.twist_impulse + s), limit = mu * load.twist;
+    const V twist = min_of(max_of(old_twist - gain * V::load(k.twist_mass + s) * dot(f.n, spin), zero - limit), limit);
+    twist.store(k.twist_impulse + s);
+    const V d = twist - old_twist;
+    const V u1 = dot(relative, f.t1) + V::load(k.twist_coupling[0] + s) * d;
+    const V u2 = dot(relative, f.t2) + V::load(k.twist_coupling[1] + s) * d;
+    const V f0 = V::load(k.friction_mass[0] + s), f1 = V::load(k.friction_mass[1] + s),
+            f2 = V::load(k.friction_mass[2] + s);
+    const V old1 = V::load(k.friction_impulse[0] + s), old2 = V::load(k.friction_impulse[1] + s);
+    V new1 = old1 - gain * (f0 * u1 + f1 * u2), new2 = old2 - gain * (f1 * u1 + f2 * u2);
+    const V max_impulse = mu * load.total, squared = new1 * new1 + new2 * new2;
+    const V shrink = select_greater(squared, max_impulse * max_impulse, max_impulse / sqrt_of(squared), one);
+    new1 = new1 * shrink;
+    new2 = new2 * shrink;
+    new1.store(k.friction_impulse[0] + s);
+    new2.store(k.friction_impulse[1] + s);
+    u.template apply<one_sided>(f.t1 * (new1 - old1) + f.t2 * (new2 - old2), f.n * d, f, inertia);
+}
+
+/// One Gauss-Seidel pass. `biased`: soft, with push-out of overlap; otherwise the relax pass: hard, without push-out.
 template <class V, bool one_sided, bool biased> void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
-    const V zero = V::set(0.0f), one = V::set(1.0f), rate = V::set(1.0f / in.sub_step);
-    const V bias_rate = V::set(in.softness.mass_scale * in.softness.bias_rate);
-    const V mass_scale = V::set(in.softness.mass_scale), impulse_scale = V::set(in.softness.impulse_scale);
-    const V fastest_out = V::set(-in.push_out_speed);
-    V ignored;
-    const Symmetric<V> ia = gather_inertia<V>(in.masses, k.a + s, &ignored);
-    const Symmetric<V> ib = gather_inertia<V>(in.masses, k.b + s, &ignored);
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s);
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
-    const Vec<V> n = load3<V>(k.normal, s), t1 = load3<V>(k.tangent, s), t2 = cross(n, t1);
-    const Vec<V> ca = load3<V>(k.offset_a, s), cb = load3<V>(k.offset_b, s);
+    const Frame<V> f = Frame<V>::load(k, s);
 
-    V base, e1, e2;
-    {
-        V a[8], b[8];
-        const float* poses = reinterpret_cast<const float*>(in.bodies) + 8;
-        V::gather8(poses, k.a + s, 16, a);
-        V::gather8(poses, k.b + s, 16, b);
-        const Vec<V> ea = turned_back_less(Vec<V>{a[4], a[5], a[6]}, a[7], n);
-        const Vec<V> eb = turned_back_less(Vec<V>{b[4], b[5], b[6]}, b[7], n);
-        const Vec<V> moved = Vec<V>{b[0], b[1], b[2]} - Vec<V>{a[0], a[1], a[2]}, e = eb - ea;
-        base = dot(n, moved) + dot(eb, cb) - dot(ea, ca);
-        e1 = dot(e, t1);
-        e2 = dot(e, t2);
-    }
+    NormalSolver<V> normal;
+    normal.points.template load<biased>(k, s, in, current_separation_change(f, in.bodies, k.a + s, k.b + s));
+    normal.velocity = normal_velocity(f, u);
+    normal.coupling = Coupling<V>::load(k, s);
+    normal.solve();
+    const NormalLoad<V> load = store_impulses(k, s, normal.points);
+    u.template apply<one_sided>(f.n * normal.sum, f.t1 * normal.sum_y - f.t2 * normal.sum_x, f, inertia);
 
-    // Normal velocity as an affine function of the point; impulses change it through the 3 x 3 coupling alone.
-    const Vec<V> rel = u.vb + cross(u.wb, cb) - u.va - cross(u.wa, ca), spin = u.wb - u.wa;
-    V q0 = dot(n, rel), q1 = zero - dot(t2, spin), q2 = dot(t1, spin);
-    const V m00 = V::load(k.coupling[0] + s), m01 = V::load(k.coupling[1] + s), m02 = V::load(k.coupling[2] + s);
-    const V m11 = V::load(k.coupling[3] + s), m12 = V::load(k.coupling[4] + s), m22 = V::load(k.coupling[5] + s);
-    V impulse[4], x[4], y[4], mass[4], bias[4], scale[4], decay[4];
-    V mass_sum = zero, residual = zero, scaled = zero, decayed = zero;
-    for (int i = 0; i < 4; ++i) {
-        x[i] = V::load(k.x[i] + s);
-        y[i] = V::load(k.y[i] + s);
-        mass[i] = V::load(k.point_mass[i] + s);
-        impulse[i] = V::load(k.impulse[i] + s);
-        const V separation = V::load(k.separation[i] + s) + base + x[i] * e1 + y[i] * e2;
-        if constexpr (biased) {
-            bias[i] = select_greater(separation, zero, separation * rate, max_of(bias_rate * separation, fastest_out));
-            scale[i] = select_greater(separation, zero, one, mass_scale);
-            decay[i] = select_greater(separation, zero, zero, impulse_scale);
-        } else {
-            bias[i] = max_of(separation, zero) * rate;
-            scale[i] = one;
-            decay[i] = zero;
-        }
-        mass_sum = mass_sum + mass[i];
-        residual = residual + (mass[i] * (scale[i] * (q0 + x[i] * q1 + y[i] * q2) + bias[i]) + decay[i] * impulse[i]);
-        scaled = scaled + mass[i] * scale[i];
-        decayed = decayed + mass[i] * decay[i];
-    }
-    V sum = zero, sx = zero, sy = zero;
-    const auto push = [&](int i, V wanted) FASE_LAMBDA_INLINE {
-        const V next = select_greater(mass[i], zero, max_of(wanted, zero), zero);
-        const V d = next - impulse[i], dx = x[i] * d, dy = y[i] * d;
-        impulse[i] = next;
-        sum = sum + d;
-        sx = sx + dx;
-        sy = sy + dy;
-        q0 = q0 + (m00 * d + m01 * dx + m02 * dy);
-        q1 = q1 + (m01 * d + m11 * dx + m12 * dy);
-        q2 = q2 + (m02 * d + m12 * dx + m22 * dy);
-    };
-    // First all points together, so that a load that rests on them evenly is borne evenly; then one by one.
-    const V stiffness = mass_sum * (scaled * m00) + decayed;
-    const V together = select_greater(stiffness, zero, residual / stiffness, zero);
-    for (int i = 0; i < 4; ++i) push(i, impulse[i] - mass[i] * together);
-    for (int i = 0; i < 4; ++i)
-        push(i, impulse[i] - mass[i] * (scale[i] * (q0 + x[i] * q1 + y[i] * q2) + bias[i]) - decay[i] * impulse[i]);
-    V total = zero, twist_limit = zero;
-    for (int i = 0; i < 4; ++i) {
-        impulse[i].store(k.impulse[i] + s);
-        total = total + impulse[i];
-        twist_limit = twist_limit + impulse[i] * V::load(k.lever[i] + s);
-    }
-    u.template apply<one_sided>(n * sum, t1 * sy - t2 * sx, ca, cb, ia, ib);
-
-    {
-        // Friction: a twist about the normal, then both tangents at once inside the cone.
-        const V mu = V::load(k.friction + s), gain = V::set(friction_gain);
-        const Vec<V> rel2 = u.vb + cross(u.wb, cb) - u.va - cross(u.wa, ca), spin2 = u.wb - u.wa;
-        const V old_twist = V::load(k.twist_impulse + s), limit = mu * twist_limit;
-        const V twist =
-            min_of(max_of(old_twist - gain * V::load(k.twist_mass + s) * dot(n, spin2), zero - limit), limit);
-        twist.store(k.twist_impulse + s);
-        const V d = twist - old_twist;
-        const V u1 = dot(rel2, t1) + V::load(k.twist_coupling[0] + s) * d;
-        const V u2 = dot(rel2, t2) + V::load(k.twist_coupling[1] + s) * d;
-        const V f0 = V::load(k.friction_mass[0] + s), f1 = V::load(k.friction_mass[1] + s),
-                f2 = V::load(k.friction_mass[2] + s);
-        const V old1 = V::load(k.friction_impulse[0] + s), old2 = V::load(k.friction_impulse[1] + s);
-        V new1 = old1 - gain * (f0 * u1 + f1 * u2), new2 = old2 - gain * (f1 * u1 + f2 * u2);
-        const V most = mu * total, squared = new1 * new1 + new2 * new2;
-        const V shrink = select_greater(squared, most * most, most / sqrt_of(squared), one);
-        new1 = new1 * shrink;
-        new2 = new2 * shrink;
-        new1.store(k.friction_impulse[0] + s);
-        new2.store(k.friction_impulse[1] + s);
-        u.template apply<one_sided>(t1 * (new1 - old1) + t2 * (new2 - old2), n * d, ca, cb, ia, ib);
-    }
+    solve_friction<V, one_sided>(k, s, f, inertia, load, u);
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 

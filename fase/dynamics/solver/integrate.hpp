@@ -1,5 +1,5 @@
 #pragma once
-/// Moving bodies in time: velocities by forces, poses by velocities, spin by its own momentum.
+/// Time integration of bodies: velocities, poses, and torque-free rotation.
 #include <cstdint>
 #include <span>
 
@@ -8,45 +8,47 @@
 
 namespace fase::dynamics {
 
-/// What a SolverBody's row needs besides while it is moved.
+/// The values of a SolverBody that only integration uses.
 struct alignas(64) SolverMotion {
-    Vec3 velocity_step;       ///< m/s that gravity and forces add in a sub-step
-    Vec3 spin_step;           ///< rad/s that torques add
-    float linear_factor = 1;  ///< what damping leaves in a sub-step
+    Vec3 velocity_step;       ///< m/s that gravity and forces add per sub-step
+    Vec3 spin_step;           ///< rad/s that torques add per sub-step
+    float linear_factor = 1;  ///< damping factor of the velocity per sub-step
     float angular_factor = 1;
-    Vec3 moments;          ///< principal, kg m²; 0 on axes that cannot turn
-    Quat rotation;         ///< principal axes to world at the begin of the step
-    Vec3 velocity_before;  ///< at the begin of the sub-step
-    Vec3 free_velocity;    ///< after forces, before contacts: what contacts changed is the difference
+    Vec3 moments;          ///< principal, kg m²; 0 for bodies with an axis that cannot rotate
+    Quat rotation;         ///< principal axes to world, at the beginning of the step
+    Vec3 velocity_before;  ///< at the beginning of the sub-step
+    Vec3 free_velocity;    ///< after forces, before contacts; the change by contacts is the difference to it
     Vec3 free_spin;
     std::uint8_t locks = 0;
-    bool tumbles = false;  ///< unequal moments and free to turn: the spin changes without torque
-    bool moves = false;    ///< dynamic: forces act; false: kinematic
-    bool clamped = false;  ///< set when a speed cap was met
+    bool gyroscopic = false;  ///< unequal moments and no angular lock: the angular velocity changes without torque
+    bool is_dynamic = false;  ///< false: kinematic, forces do not act
+    bool clamped = false;     ///< the speed was clamped in this step
 };
 
-/// Caps of Settings.
-struct SpeedCaps {
+/// The speed limits of Settings: m/s and rad/s.
+struct SpeedLimits {
     float linear = 1000, angular = 1000;
 };
 
-/// Adds forces and damping for one sub-step; from the second on (`again`), first adds what contacts changed in the last
-/// one, which starts them warm without another pass over the contacts.
-void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> motions, bool again, SpeedCaps caps);
+/// Applies forces and damping for one sub-step. With `warm_start` (from the second sub-step on) it also re-applies the
+/// velocity change by contacts of the last sub-step; this warm starts the contacts without a pass over them.
+void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> motions, bool warm_start,
+                          SpeedLimits limits);
 
-/// Moves and turns by one sub-step. A body that no contact pushed moves by the mean of its velocities before and after,
-/// which is exact for constant forces: free flight is a true parabola and keeps its energy. Bodies with unequal moments
-/// turn with their angular momentum kept, by the symmetric splitting into turns about the principal axes. Source:
-/// Dullweber, Leimkuhler, McLachlan 1997, Symplectic splitting methods for rigid body molecular dynamics; without libm:
-/// tangents of half angles by a rational approximation.
+/// Integrates the poses over one sub-step. A body without contact impulses moves by the mean of its velocities before
+/// and after, which is exact for constant forces: free flight is a parabola and conserves energy. Bodies with unequal
+/// moments rotate by symmetric splitting into rotations about the principal axes, which conserves angular momentum.
+/// Source: Dullweber, Leimkuhler, McLachlan 1997, Symplectic splitting methods for rigid body molecular dynamics. Uses
+/// no libm: tangents of half angles come from a rational approximation.
 void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motions, float sub_step);
 
-/// tan(x) for |x| <= 1, from above that point on its tangent; relative error below 2e-3 at 1 and 1e-7 below 0.1.
-[[nodiscard]] double half_angle_tangent(double x);
+/// Returns tan(x) for |x| <= 1, and its linear continuation beyond. Relative error below 2e-3 at 1, and below 1e-7 for
+/// |x| < 0.1.
+[[nodiscard]] double approximate_tangent(double x);
 
-/// One free turn of `h` seconds: `rotation` (principal axes to world) and angular momentum in the principal frame.
-/// |momentum| is kept to rounding, the energy to O(h²) without drift. In double, so that thousands of steps do not add
-/// up their rounding.
-void free_turn(Quatd& rotation, Vec3d& momentum, Vec3d moments, double h);
+/// Rotates a torque-free body for `h` seconds. `rotation` maps the principal axes to the world; `momentum` is the
+/// angular momentum in the principal frame. Conserves |momentum| to rounding, and the energy to O(h²) without drift.
+/// Uses double, so that rounding does not accumulate over thousands of steps.
+void rotate_torque_free(Quatd& rotation, Vec3d& momentum, Vec3d moments, double h);
 
 }  // namespace fase::dynamics

@@ -1,15 +1,15 @@
 #pragma once
-/// Islands: sets of bodies that touch, directly or through others.
+/// Islands: sets of bodies that are connected by contacts.
 #include <cstdint>
 #include <vector>
 
 namespace fase::dynamics {
 
-/// Disjoint sets over 0..n-1; the representative of a set is its least member, whatever the order of the unions.
+/// Disjoint sets over 0..n-1. The representative of a set is its smallest member, for any order of the unions.
 /// Source: Galler, Fischer 1964, An improved equivalence algorithm; with path halving (van Leeuwen, Tarjan 1984).
 class DisjointSets {
 public:
-    /// n sets of one member each. Keeps its memory.
+    /// Creates n sets of one member each. Reuses its memory.
     void reset(std::size_t n) {
         parent_.resize(n);
         for (std::size_t i = 0; i < n; ++i) parent_[i] = static_cast<std::uint32_t>(i);

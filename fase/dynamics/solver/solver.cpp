@@ -1,4 +1,4 @@
-/// The soft step over colours: load, run, store.
+/// The soft step over graph colours: load, run, store.
 #include "fase/dynamics/solver/solver.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ constexpr std::size_t body_grain = 256;
 constexpr std::size_t contact_grain = 128;
 constexpr std::size_t block_grain = 24;
 constexpr int overflow_two_sided = Colouring::colours, overflow_one_sided = Colouring::colours + 1;
-constexpr float absent = 1e9f;  // separation of a point that is not there
+constexpr float absent_separation = 1e9f;  // separation of an absent point
 
 Vec3 read(const float (*rows)[8], int lane) { return {rows[0][lane], rows[1][lane], rows[2][lane]}; }
 void write(float (*rows)[8], int lane, Vec3 v) {
@@ -26,7 +26,7 @@ void write(float* p, Vec3 v) {
     p[2] = v.z;
 }
 
-/// World inverse inertia R diag(inverse moments) Rᵀ, with the rows and columns of locked axes zeroed.
+/// Computes the world inverse inertia R diag(inverse moments) Rᵀ, with zeros in the rows and columns of locked axes.
 void world_inertia(SolverMass& mass, const BodyTraits& traits, Quat rotation) {
     const Mat3 r = to_matrix(rotation);
     const Vec3 i = traits.inverse_moments;
@@ -45,10 +45,10 @@ Vec3 times(const float* m, Vec3 v) {
             m[2] * v.x + m[4] * v.y + m[5] * v.z};
 }
 
-void clear_block(ContactBlock& block, std::uint32_t spare_row) {
+void clear_block(ContactBlock& block, std::uint32_t unused_row) {
     std::memset(&block, 0, sizeof block);
     for (int i = 0; i < block_lanes; ++i) {
-        block.a[i] = block.b[i] = spare_row;
+        block.a[i] = block.b[i] = unused_row;
         block.contact[i] = no_index;
         block.turn_a[3][i] = block.turn_b[3][i] = 1;
     }
@@ -101,7 +101,7 @@ void Solver::load_bodies(const Bodies& bodies, std::span<const std::uint32_t> aw
             }
             row.inverse_mass = traits.inverse_mass;
             world_inertia(mass, traits, motion.rotation);
-            extra.moves = true;
+            extra.is_dynamic = true;
             extra.locks = traits.locks;
             if (traits.inverse_mass > 0) extra.velocity_step = settings.gravity * (h * traits.gravity_scale);
             extra.velocity_step += forces.force * (h * traits.inverse_mass);
@@ -111,17 +111,17 @@ void Solver::load_bodies(const Bodies& bodies, std::span<const std::uint32_t> aw
             const Vec3 inverse = traits.inverse_moments;
             if (inverse.x > 0 && inverse.y > 0 && inverse.z > 0 && (traits.locks & 0x38) == 0) {
                 extra.moments = {1 / inverse.x, 1 / inverse.y, 1 / inverse.z};
-                const float most = std::max({inverse.x, inverse.y, inverse.z});
-                const float least = std::min({inverse.x, inverse.y, inverse.z});
-                extra.tumbles = most - least > 1e-5f * most;
+                const float max = std::max({inverse.x, inverse.y, inverse.z});
+                const float min = std::min({inverse.x, inverse.y, inverse.z});
+                extra.gyroscopic = max - min > 1e-5f * max;
             }
         }
     });
 }
 
-void Solver::fill(ContactBlock& block, int lane, const Slot& slot, const Contact& c, const Bodies& bodies) const {
-    // In the block, b is the movable one. Turned round, the normal and the second tangent change sign: y and the
-    // impulse along that tangent with them.
+void Solver::fill_lane(ContactBlock& block, int lane, const Slot& slot, const Contact& c, const Bodies& bodies) const {
+    // In the block, b is always dynamic. Swapping a and b negates the normal and the second tangent, and with it y and
+    // the friction impulse along that tangent.
     const std::uint32_t body_a = slot.flipped ? c.body_b : c.body_a;
     const std::uint32_t body_b = slot.flipped ? c.body_a : c.body_b;
     const BodyMotion& a = bodies.motion[body_a];
@@ -139,14 +139,14 @@ void Solver::fill(ContactBlock& block, int lane, const Slot& slot, const Contact
     const Quat turn_b = b.rotation * conjugate(slot.flipped ? c.rotation_a : c.rotation_b);
     const float qa[4] = {turn_a.x, turn_a.y, turn_a.z, turn_a.w}, qb[4] = {turn_b.x, turn_b.y, turn_b.z, turn_b.w};
     for (int i = 0; i < 4; ++i) {
-        const bool there = i < c.count;
+        const bool present = i < c.count;
         block.turn_a[i][lane] = qa[i];
         block.turn_b[i][lane] = qb[i];
-        block.x[i][lane] = there ? c.x[i] : 0;
-        block.y[i][lane] = there ? c.y[i] * sign : 0;
-        block.separation[i][lane] = there ? c.separation[i] : absent;
-        block.impulse[i][lane] = there ? c.impulse[i] : 0;
-        block.point_mass[i][lane] = there ? 1.0f : 0.0f;  // prepare_lanes() turns the mark into the mass
+        block.x[i][lane] = present ? c.x[i] : 0;
+        block.y[i][lane] = present ? c.y[i] * sign : 0;
+        block.separation[i][lane] = present ? c.separation[i] : absent_separation;
+        block.impulse[i][lane] = present ? c.impulse[i] : 0;
+        block.point_mass[i][lane] = present ? 1.0f : 0.0f;  // prepare_points() replaces it by the mass
     }
     block.friction_impulse[0][lane] = c.friction_impulse[0];
     block.friction_impulse[1][lane] = c.friction_impulse[1] * sign;
@@ -156,7 +156,7 @@ void Solver::fill(ContactBlock& block, int lane, const Slot& slot, const Contact
     if (c.restitution > 0) {
         const SolverMotion& ma = motions_[block.a[lane]];
         const SolverMotion& mb = motions_[block.b[lane]];
-        // Velocity that forces add in a sub-step; the time is divided out where it is used.
+        // Velocity per sub-step; bounce() divides by the time.
         block.closing[lane] = dot(c.normal * sign, ma.velocity_step - mb.velocity_step);
     }
 }
@@ -170,36 +170,36 @@ void Solver::load_contacts(std::span<const Contact> contacts, std::span<const st
     for (std::size_t i = 0; i < active.size(); ++i) {
         const Contact& c = contacts[active[i]];
         const std::uint32_t row_a = row_of_body_[c.body_a], row_b = row_of_body_[c.body_b];
-        const bool a_moves = motions_[row_a].moves, b_moves = motions_[row_b].moves;
-        int colour =
-            a_moves && b_moves ? colouring_.colour(row_a, row_b) : colouring_.colour_one_sided(b_moves ? row_b : row_a);
-        if (colour == Colouring::none) colour = a_moves && b_moves ? overflow_two_sided : overflow_one_sided;
-        slots_[i] = {active[i], static_cast<std::uint8_t>(colour), !b_moves, colours_[colour].contacts++};
+        const bool a_is_dynamic = motions_[row_a].is_dynamic, b_is_dynamic = motions_[row_b].is_dynamic;
+        int colour = a_is_dynamic && b_is_dynamic ? colouring_.colour(row_a, row_b)
+                                                  : colouring_.colour_one_sided(b_is_dynamic ? row_b : row_a);
+        if (colour == Colouring::none) colour = a_is_dynamic && b_is_dynamic ? overflow_two_sided : overflow_one_sided;
+        slots_[i] = {active[i], static_cast<std::uint8_t>(colour), !b_is_dynamic, colours_[colour].contacts++};
         any_restitution_ |= c.restitution > 0;
     }
     counts_ = {};
-    const auto spare = static_cast<std::uint32_t>(rows_.size() - 1);
+    const auto unused_row = static_cast<std::uint32_t>(rows_.size() - 1);
     for (int i = 0; i < Colouring::colours + 2; ++i) {
         Colour& colour = colours_[i];
         colour.one_sided = (i >= Colouring::two_sided && i < Colouring::colours) || i == overflow_one_sided;
-        const std::uint32_t lanes = i >= Colouring::colours ? 1 : block_lanes;  // overflow: a block for each contact
+        const std::uint32_t lanes = i >= Colouring::colours ? 1 : block_lanes;  // overflow: one block per contact
         colour.blocks.resize((colour.contacts + lanes - 1) / lanes);
         if (colour.contacts == 0) continue;
         if (i >= Colouring::colours) {
             counts_.overflow += colour.contacts;
-            for (ContactBlock& block : colour.blocks) clear_block(block, spare);
+            for (ContactBlock& block : colour.blocks) clear_block(block, unused_row);
         } else {
             ++counts_.colours;
-            clear_block(colour.blocks.back(), spare);
+            clear_block(colour.blocks.back(), unused_row);
         }
     }
     parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Slot& slot = slots_[i];
             const bool overflow = slot.colour >= Colouring::colours;
-            ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.place : slot.place / block_lanes];
-            const int lane = overflow ? 0 : static_cast<int>(slot.place % block_lanes);
-            fill(block, lane, slot, contacts[slot.contact], bodies);
+            ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.index : slot.index / block_lanes];
+            const int lane = overflow ? 0 : static_cast<int>(slot.index % block_lanes);
+            fill_lane(block, lane, slot, contacts[slot.contact], bodies);
         }
     });
 }
@@ -209,7 +209,7 @@ void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& t
     const float frequency = std::min(settings.contact_frequency, 0.25f / h);
     PassInput input{rows_.data(), masses_.data(), h, make_softness(frequency, settings.contact_damping_ratio, h),
                     settings.push_out_speed};
-    PassInput one_sided = input;  // against what does not give way, contacts are twice as stiff
+    PassInput one_sided = input;  // contacts with static and kinematic bodies are twice as stiff
     one_sided.softness = make_softness(2 * frequency, 0.5f * settings.contact_damping_ratio, h);
     const auto run = reference ? run_pass_reference : run_pass;
     for (const int overflow : {overflow_two_sided, overflow_one_sided}) {
@@ -219,9 +219,9 @@ void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& t
     }
     for (int i = 0; i < Colouring::colours; ++i) {
         Colour& colour = colours_[i];
-        const PassInput& mine = colour.one_sided ? one_sided : input;
+        const PassInput& pass_input = colour.one_sided ? one_sided : input;
         parallel_ranges(tasks, colour.blocks.size(), block_grain, [&](std::size_t begin, std::size_t end) {
-            run(pass, colour.blocks.data() + begin, end - begin, colour.one_sided, mine);
+            run(pass, colour.blocks.data() + begin, end - begin, colour.one_sided, pass_input);
         });
     }
 }
@@ -236,7 +236,8 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
         });
     };
     for (int step = 0; step < settings.sub_steps; ++step) {
-        each_body([&](auto rows, auto motions) { integrate_velocities(rows, motions, step > 0, settings.caps); });
+        each_body(
+            [&](auto rows, auto motions) { integrate_velocities(rows, motions, step > 0, settings.speed_limits); });
         if (step == 0) run_passes(Pass::WarmStart, settings, tasks);
         run_passes(Pass::Biased, settings, tasks);
         each_body([&](auto rows, auto motions) { integrate_poses(rows, motions, h); });
@@ -248,9 +249,8 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
 }
 
-/// Gives back what each point's material keeps of the speed of approach. The speed is that at the moment of touch, from
-/// speed, gap and forces at the begin of the step: a perfect bounce keeps the energy, whatever part of the step was
-/// left at the touch.
+/// Applies restitution to each point. The approach speed is the speed at the moment of touch, computed from speed, gap
+/// and forces at the beginning of the step, so that an elastic bounce conserves energy wherever in the step it happens.
 void Solver::bounce(ContactBlock& k, const SolverSettings& settings) {
     const float sub_steps = static_cast<float>(settings.sub_steps), h = settings.time_step / sub_steps;
     for (int lane = 0; lane < block_lanes; ++lane) {
@@ -266,12 +266,12 @@ void Solver::bounce(ContactBlock& k, const SolverSettings& settings) {
             if (!(mass > 0) || !(old > 0) || !(approach > settings.restitution_threshold)) continue;
             const float gap = std::max(k.separation[i][lane], 0.0f);
             const float at_touch = std::sqrt(std::max(approach * approach + 2 * closing * gap, 0.0f));
-            const float wanted = k.restitution[lane] * at_touch;
+            const float target = k.restitution[lane] * at_touch;
             const Vec3 shift = t1 * k.x[i][lane] + t2 * k.y[i][lane];
             const Vec3 ra = read(k.offset_a, lane) + shift, rb = read(k.offset_b, lane) + shift;
             Vec3 va = read(a.velocity), wa = read(a.spin), vb = read(b.velocity), wb = read(b.spin);
             const float speed = dot(n, vb + cross(wb, rb) - va - cross(wa, ra));
-            const float impulse = std::max(old - mass * (speed - wanted), 0.0f);
+            const float impulse = std::max(old - mass * (speed - target), 0.0f);
             k.impulse[i][lane] = impulse;
             const Vec3 p = n * (impulse - old);
             if (b.inverse_mass > 0) {
@@ -291,11 +291,11 @@ void Solver::store_contacts(std::span<Contact> contacts, TaskRunner& tasks) cons
         for (std::size_t s = begin; s < end; ++s) {
             const Slot& slot = slots_[s];
             const bool overflow = slot.colour >= Colouring::colours;
-            const ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.place : slot.place / block_lanes];
-            const int lane = overflow ? 0 : static_cast<int>(slot.place % block_lanes);
+            const ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.index : slot.index / block_lanes];
+            const int lane = overflow ? 0 : static_cast<int>(slot.index % block_lanes);
             Contact& c = contacts[slot.contact];
             float fastest = 0;
-            c.nearest = absent;
+            c.nearest = absent_separation;
             c.pushes = false;
             for (int i = 0; i < c.count; ++i) {
                 c.impulse[i] = block.impulse[i][lane];

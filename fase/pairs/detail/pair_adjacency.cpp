@@ -1,4 +1,4 @@
-/// The chains of kept pairs.
+/// The linked lists of pairs by proxy.
 #include "fase/pairs/detail/pair_adjacency.hpp"
 
 #include <algorithm>
@@ -12,62 +12,62 @@ using namespace broad;
 void PairAdjacency::clear() {
     pairs_.clear();
     links_.clear();
-    std::fill(first_.begin(), first_.end(), none);
+    std::fill(heads_.begin(), heads_.end(), none);
 }
 
 void PairAdjacency::add(std::span<const Pair> pairs) {
     Proxy largest = 0;
     for (const Pair pair : pairs) largest = std::max(largest, pair.b);
-    if (!pairs.empty() && largest >= first_.size()) first_.resize(largest + std::size_t{1}, none);
+    if (!pairs.empty() && largest >= heads_.size()) heads_.resize(largest + std::size_t{1}, none);
     for (const Pair pair : pairs) {
-        const auto place = static_cast<Link>(pairs_.size());
-        FASE_ASSERT(place < none / 2);
+        const auto index = static_cast<Link>(pairs_.size());
+        FASE_ASSERT(index < none / 2);
         pairs_.push_back(pair);
         links_.emplace_back();
-        hang(2 * place);
-        hang(2 * place + 1);
+        push_front(2 * index);
+        push_front(2 * index + 1);
     }
 }
 
-void PairAdjacency::drop(Proxy p) {
-    if (p >= first_.size()) return;
-    while (first_[p] != none) take_out(first_[p] / 2);
+void PairAdjacency::remove_all_of(Proxy p) {
+    if (p >= heads_.size()) return;
+    while (heads_[p] != none) remove_at(heads_[p] / 2);
 }
 
-/// Puts it at the front of its chain.
-void PairAdjacency::hang(Link link) {
-    Link& first = first_[proxy_of(link)];
-    links_[link / 2].next[link & 1] = first;
-    links_[link / 2].before[link & 1] = none;
-    if (first != none) links_[first / 2].before[first & 1] = link;
-    first = link;
+/// Inserts a link at the front of its proxy's linked list.
+void PairAdjacency::push_front(Link link) {
+    Link& head = heads_[proxy_of(link)];
+    links_[link / 2].next[link & 1] = head;
+    links_[link / 2].previous[link & 1] = none;
+    if (head != none) links_[head / 2].previous[head & 1] = link;
+    head = link;
 }
 
-void PairAdjacency::unhang(Link link) {
-    const Link next = links_[link / 2].next[link & 1], before = links_[link / 2].before[link & 1];
-    if (next != none) links_[next / 2].before[next & 1] = before;
-    if (before != none) {
-        links_[before / 2].next[before & 1] = next;
+void PairAdjacency::unlink(Link link) {
+    const Link next = links_[link / 2].next[link & 1], previous = links_[link / 2].previous[link & 1];
+    if (next != none) links_[next / 2].previous[next & 1] = previous;
+    if (previous != none) {
+        links_[previous / 2].next[previous & 1] = next;
     } else {
-        first_[proxy_of(link)] = next;
+        heads_[proxy_of(link)] = next;
     }
 }
 
-/// The last of the list takes the place.
-void PairAdjacency::take_out(std::uint32_t place) {
-    unhang(2 * place);
-    unhang(2 * place + 1);
+/// Moves the last pair of the list to the free index.
+void PairAdjacency::remove_at(std::uint32_t index) {
+    unlink(2 * index);
+    unlink(2 * index + 1);
     const auto last = static_cast<std::uint32_t>(pairs_.size() - 1);
-    if (place != last) {
-        pairs_[place] = pairs_[last];
-        links_[place] = links_[last];
+    if (index != last) {
+        pairs_[index] = pairs_[last];
+        links_[index] = links_[last];
         for (const Link side : {0u, 1u}) {
-            const Link next = links_[place].next[side], before = links_[place].before[side];
-            if (next != none) links_[next / 2].before[next & 1] = 2 * place + side;
-            if (before != none) {
-                links_[before / 2].next[before & 1] = 2 * place + side;
+            const Link next = links_[index].next[side], previous = links_[index].previous[side];
+            if (next != none) links_[next / 2].previous[next & 1] = 2 * index + side;
+            if (previous != none) {
+                links_[previous / 2].next[previous & 1] = 2 * index + side;
             } else {
-                first_[proxy_of(2 * place + side)] = 2 * place + side;
+                heads_[proxy_of(2 * index + side)] = 2 * index + side;
             }
         }
     }
@@ -76,17 +76,18 @@ void PairAdjacency::take_out(std::uint32_t place) {
 }
 
 std::string PairAdjacency::broken_invariant() const {
-    if (links_.size() != pairs_.size()) return "pairs and links differ in number";
-    std::size_t hung = 0;
-    for (Proxy p = 0; p < first_.size(); ++p) {
-        Link before = none;
-        for (Link link = first_[p]; link != none; before = link, link = links_[link / 2].next[link & 1]) {
-            if (link / 2 >= pairs_.size() || proxy_of(link) != p) return "a pair hangs in another's chain";
-            if (links_[link / 2].before[link & 1] != before) return "a chain does not lead back";
-            if (++hung > 2 * pairs_.size()) return "a chain has no end";
+    if (links_.size() != pairs_.size()) return "the numbers of pairs and links differ";
+    std::size_t linked_count = 0;
+    for (Proxy p = 0; p < heads_.size(); ++p) {
+        Link previous = none;
+        for (Link link = heads_[p]; link != none; previous = link, link = links_[link / 2].next[link & 1]) {
+            if (link / 2 >= pairs_.size() || proxy_of(link) != p)
+                return "a pair is in the linked list of another proxy";
+            if (links_[link / 2].previous[link & 1] != previous) return "a link and its previous link disagree";
+            if (++linked_count > 2 * pairs_.size()) return "a linked list has a cycle";
         }
     }
-    return hung == 2 * pairs_.size() ? "" : "a pair hangs in no chain";
+    return linked_count == 2 * pairs_.size() ? "" : "a pair is in no linked list";
 }
 
 }  // namespace fase::pairs

@@ -1,5 +1,5 @@
 #pragma once
-/// The loops of a pair tracker that are compiled for every SIMD target.
+/// The SIMD loops of a pair tracker, compiled for every target.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -8,25 +8,26 @@
 
 namespace fase::pairs::passes {
 
-/// Where a box was and is, in one line of the cache: lower corners before and now, upper corners before and now. The
-/// fourth number of each is 0 in all. All others are NaN where it was or is absent (Aabb{}): that overlaps nothing.
-struct alignas(64) LastPlaces {
+/// The bounds of a box in the last frame (index 0) and in this frame (index 1), in one cache line. The fourth number of
+/// each corner is 0. The others are NaN in a frame in which the box is absent (Aabb{}), so that it overlaps nothing.
+struct alignas(64) BoxHistory {
     float lo[2][4], hi[2][4];
 };
 
-/// Puts a box into both places.
-void stay(const Aabb& box, LastPlaces& places);
+/// Sets both frames of a history to a box.
+void reset_history(const Aabb& box, BoxHistory& history);
 
-/// What is now was before, and the boxes are now; for boxes `begin` to `end`. `changed` gets those that are not in the
-/// same place for the third time, bit by bit, in order, and needs room for all; returns how many. Their `spans` become
-/// the smallest boxes that hold both places (of two of which one has a NaN, at least the other; of two absent ones
-/// Aabb{}).
-std::size_t advance(std::span<const Aabb> boxes, std::size_t begin, std::size_t end, LastPlaces* places, Aabb* spans,
-                    broad::Proxy* changed);
+/// Moves the bounds of this frame to the last frame and reads the new ones, for boxes `begin` to `end`. Writes to
+/// `changed`, in order, the boxes whose bounds are not the same bits in the last three frames, and returns their
+/// number; `changed` needs capacity for all. Sets their `swept` to the bounds of both frames. If a coordinate is NaN in
+/// one frame, `swept` contains at least the other; if the box is absent in both, it is Aabb{}.
+std::size_t advance_histories(std::span<const Aabb> boxes, std::size_t begin, std::size_t end, BoxHistory* histories,
+                              Aabb* swept, broad::Proxy* changed);
 
-/// Tells what became of the pairs: those that overlap in both places move to the front of the list, in their order;
-/// returns how many. The others are appended to `begun` or `ended`, or were no pair in either frame.
-std::size_t tell(std::span<const LastPlaces> places, std::span<broad::Pair> pairs, std::vector<broad::Pair>& begun,
-                 std::vector<broad::Pair>& ended);
+/// Classifies pairs. Moves those that overlap in both frames to the front of the list, in order, and returns their
+/// number. Appends those that overlap only in this frame to `begun`, only in the last frame to `ended`. Drops the
+/// others.
+std::size_t classify_pairs(std::span<const BoxHistory> histories, std::span<broad::Pair> pairs,
+                           std::vector<broad::Pair>& begun, std::vector<broad::Pair>& ended);
 
 }  // namespace fase::pairs::passes

@@ -1,4 +1,4 @@
-/// Boxes, masses and shared shapes, kept right when bodies are edited.
+/// Updates boxes, masses and shared shapes when bodies are edited.
 #include "fase/world/detail/edit.hpp"
 
 #include <algorithm>
@@ -9,34 +9,34 @@
 namespace fase {
 
 Error stale_id(const char* where) {
-    return {Status::BadHandle, where, "found an id that names nothing in this world",
-            "ids end with what they name, and are good in their own world only"};
+    return {Status::BadHandle, where, "found an id that is stale or of another world",
+            "an id is valid until its body or collider is removed, and only in its own world"};
 }
 
-Error refused(std::string where, std::string found, std::string need, std::string remedy) {
-    return {Status::BadArgument, std::move(where), "found " + found + ", need " + need, std::move(remedy)};
+Error refused(std::string where, std::string found, std::string expected, std::string remedy) {
+    return {Status::BadArgument, std::move(where), "found " + found + "; expected " + expected, std::move(remedy)};
 }
 
-void note_edit(WorldState& state, std::uint32_t collider) {
-    note_box(state, collider);
+void mark_edited(WorldState& state, std::uint32_t collider) {
+    mark_box_changed(state, collider);
     if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);
     state.changes[collider] |= edited;
 }
 
-void renew_box(WorldState& state, std::uint32_t collider) {
-    state.boxes[collider] = reaching_box(state, collider, 0, 0);
+void update_box(WorldState& state, std::uint32_t collider) {
+    state.boxes[collider] = speculative_box(state, collider, 0, 0);
     const broad::Move move{collider, state.boxes[collider]};
-    broad::AnyStructure& boxes = boxes_of(state, state.bodies.traits[state.colliders[collider].body].motion_state);
+    broad::AnyStructure& boxes = state.box_sets.of(state.bodies.traits[state.colliders[collider].body].motion_state);
     boxes.move(std::span(&move, 1));
-    note_edit(state, collider);
+    mark_edited(state, collider);
 }
 
-void renew_boxes(WorldState& state, std::uint32_t body) {
+void update_boxes(WorldState& state, std::uint32_t body) {
     for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
-        renew_box(state, c);
+        update_box(state, c);
 }
 
-void renew_mass(WorldState& state, std::uint32_t body) {
+void update_mass(WorldState& state, std::uint32_t body) {
     dynamics::BodyTraits& traits = state.bodies.traits[body];
     dynamics::BodyMotion& motion = state.bodies.motion[body];
     const Pose pose = body_pose(traits, motion);
@@ -46,8 +46,8 @@ void renew_mass(WorldState& state, std::uint32_t body) {
         for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
             const Collider& collider = state.colliders[c];
             if (!collider.sensor && collider.density > 0)
-                parts.push_back(
-                    moved(mass_properties(state.shapes[collider.shape].shape, collider.density), collider.in_body));
+                parts.push_back(transformed(mass_properties(state.shapes[collider.shape].shape, collider.density),
+                                            collider.in_body));
         }
         traits.mass = combined(parts);
     }

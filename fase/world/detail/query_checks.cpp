@@ -1,23 +1,24 @@
-/// Refusals and filters of queries.
+/// Argument checks and filters of queries.
 #include "fase/world/detail/query_checks.hpp"
+#include "fase/core/detail/text.hpp"
 
 namespace fase::world_queries {
 
 Result<void> check_direction(Vec3 direction, const std::string& where) {
     if (is_direction(direction)) return {};
-    return refused(where, "a vector of length " + std::to_string(length(to_double(direction))), "length 1",
+    return refused(where, "a vector of length " + detail::text_of(length(to_double(direction))), "length 1",
                    "normalise it");
 }
 
 Result<void> check_length(float length, const std::string& where) {
     if (length >= 0) return {};
-    return refused(where, std::to_string(length), "0 or more metres");
+    return refused(where, detail::text_of(length), "0 or more metres");
 }
 
-Error wrong_ray(const Ray& ray, const std::string& where) {
+Error invalid_ray(const Ray& ray, const std::string& where) {
     if (auto r = check_position(ray.origin, where + ".origin"); !r) return r.error();
     if (auto r = check_direction(ray.direction, where + ".direction"); !r) return r.error();
-    return refused(where + ".length", std::to_string(ray.length), "0 or more metres");
+    return refused(where + ".length", detail::text_of(ray.length), "0 or more metres");
 }
 
 Result<void> check_placed(const Shape& shape, const Pose& pose, const std::string& where) {
@@ -27,7 +28,7 @@ Result<void> check_placed(const Shape& shape, const Pose& pose, const std::strin
         return error;
     }
     if (auto r = check_position(pose.position, where + ": pose.position"); !r) return r;
-    if (auto rotation = usable(pose.rotation, where + ": pose.rotation"); !rotation) return rotation.error();
+    if (auto rotation = check_rotation(pose.rotation, where + ": pose.rotation"); !rotation) return rotation.error();
     return {};
 }
 
@@ -42,13 +43,13 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where) {
         if (squared > 0.9998 && squared < 1.0002) {
             ++planes;
         } else if (squared != 0 || side.offset < 0) {
-            return refused(name + ".normal", "a vector of length " + std::to_string(std::sqrt(squared)), "length 1",
+            return refused(name + ".normal", "a vector of length " + detail::text_of(std::sqrt(squared)), "length 1",
                            "use frustum_of()");
         }
     }
-    if (planes == 0) return refused(where, "a frustum without planes", "six of them", "use frustum_of()");
-    // A closed frustum has corners, and at least one of them is inside all planes; else nothing is.
-    bool closed = true, holds_any = false;
+    if (planes == 0) return refused(where, "a frustum without planes", "six planes", "use frustum_of()");
+    // A closed frustum that is not empty has at least one corner that is inside all planes.
+    bool closed = true, has_inner_corner = false;
     for (std::size_t corner = 0; corner < 8; ++corner) {
         const Frustum::Side& a = frustum.sides[corner & 1];
         const Frustum::Side& b = frustum.sides[2 + ((corner >> 1) & 1)];
@@ -64,14 +65,14 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where) {
         bool inside = true;
         for (const Frustum::Side& side : frustum.sides)
             inside = inside && dot(side.normal, at) <= side.offset + 1e-6 * (1 + length(at));
-        holds_any = holds_any || inside;
+        has_inner_corner = has_inner_corner || inside;
     }
-    if (closed && !holds_any)
-        return refused(where, "planes that leave nothing inside", "normals that look outward", "use frustum_of()");
+    if (closed && !has_inner_corner)
+        return refused(where, "an empty frustum", "normals that point outward", "use frustum_of()");
     return {};
 }
 
-bool is_seen(const WorldState& state, const QueryFilter& filter, std::uint32_t index) {
+bool passes_filter(const WorldState& state, const QueryFilter& filter, std::uint32_t index) {
     const Collider& collider = state.colliders[index];
     if (collider.sensor && !filter.sensors) return false;
     if (filter.mask != QueryFilter::all && (collider.filter.category & filter.mask) == 0) return false;

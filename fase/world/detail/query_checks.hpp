@@ -1,38 +1,40 @@
 #pragma once
-/// What queries take, what they see, and how they are wrapped.
+/// Argument checks, filters and the common wrapper of all queries.
 #include <new>
 #include <string>
 
 #include "fase/core/detail/float_mode.hpp"
 #include "fase/world/detail/edit.hpp"
 #include "fase/world/detail/query_trees.hpp"
+#include "fase/world/detail/state_access.hpp"
 #include "fase/world/query.hpp"
 
 namespace fase::world_queries {
 
-/// Of length 1 to 1e-4: what is in metres then is.
+/// Whether the length of `v` is 1 to within 1e-4, so that distances along it are in metres.
 [[nodiscard]] inline bool is_direction(Vec3 v) {
     const double squared = length_squared(to_double(v));
     return squared > 0.9998 && squared < 1.0002;
 }
-/// Whether a world takes such a ray: asked for every ray, so it makes no words.
+/// Whether a ray is valid for a query. Called for every ray, so it builds no error text; see invalid_ray().
 [[nodiscard]] inline bool is_ray(const Ray& ray) {
     const Vec3d size = abs(ray.origin);
-    return size.x <= farthest && size.y <= farthest && size.z <= farthest && is_direction(ray.direction) &&
-           ray.length >= 0;
+    return size.x <= max_coordinate && size.y <= max_coordinate && size.z <= max_coordinate &&
+           is_direction(ray.direction) && ray.length >= 0;
 }
 
-// Each names the field when it refuses: "cast_ray: ray.direction".
+// The errors name the invalid field: "cast_ray: ray.direction".
 Result<void> check_direction(Vec3 direction, const std::string& where);
 Result<void> check_length(float length, const std::string& where);
-/// The Error of a ray that is none.
-[[nodiscard]] Error wrong_ray(const Ray& ray, const std::string& where);
+/// Returns the Error for a ray that is_ray() rejects.
+[[nodiscard]] Error invalid_ray(const Ray& ray, const std::string& where);
 Result<void> check_placed(const Shape& shape, const Pose& pose, const std::string& where);
-/// Not finite, or nothing can be inside; one without any plane too, for nobody means to see everything that way.
+/// An error when a plane is not finite or not of length 1, when no point is inside all planes, or when the frustum has
+/// no plane at all.
 Result<void> check_frustum(const Frustum& frustum, const std::string& where);
 
-/// Whether the filter lets a collider be seen.
-[[nodiscard]] bool is_seen(const WorldState& state, const QueryFilter& filter, std::uint32_t collider);
+/// Whether the filter accepts a collider.
+[[nodiscard]] bool passes_filter(const WorldState& state, const QueryFilter& filter, std::uint32_t collider);
 
 [[nodiscard]] inline Found found(const WorldState& state, std::uint32_t collider) {
     return {*state.body_ids.id_at(state.colliders[collider].body), *state.collider_ids.id_at(collider)};
@@ -41,20 +43,21 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where);
     return state.shapes[state.colliders[collider].shape].shape;
 }
 
-/// Calls `answer(state)`, a function that returns R, with the boxes up to date.
-template <class R, class F> R asked(const World& world, const char* where, const F& answer) {
-    const WorldState& state = world.state();
+/// Updates the query trees, then returns `query(state)`, which is of type R or convertible to it. Busy inside a step;
+/// NoMemory when an allocation fails.
+template <class R, class F> R run_query(const World& world, const char* where, const F& query) {
+    const WorldState& state = WorldStateAccess::of(world);
     if (state.stepping) return Error{Status::Busy, where, "called from inside a step", "call it after"};
     try {
         const StandardFloats floats;
-        make_ready(state);
-        return answer(state);
+        prepare_trees(state);
+        return query(state);
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, where, "no memory for the answer", ""};
+        return Error{Status::NoMemory, where, "out of memory for the result", ""};
     }
 }
 
-/// Appends what `colliders` name, in order; `out` stays as it is when memory runs out.
+/// Sorts `colliders` and appends their ids to `out`. Leaves `out` unchanged when memory runs out.
 void append(const WorldState& state, std::vector<std::uint32_t>& colliders, std::vector<Found>& out);
 
 }  // namespace fase::world_queries

@@ -1,22 +1,23 @@
-/// Keeps the trees of queries up to date, and measures how far shapes stick out of the boxes in them.
+/// Updates the query trees and measures how far shapes stick out of the boxes in them.
 #include "fase/world/detail/query_trees.hpp"
 
 namespace fase {
 
 namespace {
 
-/// Metres by which `box` would have to grow on every side to hold `tight`; 0 when it does.
+/// Returns the metres by which `box` must be enlarged on every side to contain `tight`; 0 when it contains it.
 float overhang_of(const Aabb& box, const Aabb& tight) {
-    double most = 0;
+    double overhang = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double below = double(box.lo[axis]) - double(tight.lo[axis]);
         const double above = double(tight.hi[axis]) - double(box.hi[axis]);
-        most = std::max({most, below, above});  // NaN, of an axis that both are endless on, leaves it as it is
+        // An axis on which both are unbounded gives NaN, and max() ignores it: keep `overhang` first.
+        overhang = std::max({overhang, below, above});
     }
-    return world_queries::float_above(most);
+    return world_queries::float_above(overhang);
 }
 
-/// So many are asked one by one. With them the fastest bodies of a world are out of the way of all other queries.
+/// So many colliders are tested one by one, so that a few fast bodies do not enlarge the volume of every query.
 constexpr std::size_t max_outliers = 32;
 
 struct Outlier {
@@ -25,75 +26,75 @@ struct Outlier {
 };
 
 void find_outliers(const WorldState& state) {
-    std::vector<Outlier> found;
+    std::vector<Outlier> all;
     for (const std::uint32_t body : state.awake)
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
             const float overhang = overhang_of(state.boxes[c], world_queries::tight_box(state, c));
-            if (overhang > 0) found.push_back({c, overhang});
+            if (overhang > 0) all.push_back({c, overhang});
         }
     QueryTrees& query = state.query;
     query.awake_overhang = 0;
-    if (found.size() > max_outliers) {
-        const auto middle = found.begin() + max_outliers;
-        std::nth_element(found.begin(), middle, found.end(), [](const Outlier& a, const Outlier& b) {
+    if (all.size() > max_outliers) {
+        const auto middle = all.begin() + max_outliers;
+        std::nth_element(all.begin(), middle, all.end(), [](const Outlier& a, const Outlier& b) {
             return a.overhang != b.overhang ? a.overhang > b.overhang : a.collider < b.collider;
         });
         query.awake_overhang = middle->overhang;
-        found.resize(max_outliers);
+        all.resize(max_outliers);
     }
-    std::sort(found.begin(), found.end(), [](const Outlier& a, const Outlier& b) { return a.collider < b.collider; });
+    std::sort(all.begin(), all.end(), [](const Outlier& a, const Outlier& b) { return a.collider < b.collider; });
     query.outliers.clear();
-    for (const Outlier& outlier : found) query.outliers.push_back({outlier.collider, {}});
+    for (const Outlier& outlier : all) query.outliers.push_back({outlier.collider, {}});
 }
 
 }  // namespace
 
-void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodies) {
-    if (state.asleep.bodies.size() == bodies.size()) state.query.asleep_overhang = 0;  // nobody else is there
+void measure_asleep_overhang(const WorldState& state, std::span<const std::uint32_t> bodies) {
+    if (state.asleep.bodies.size() == bodies.size()) state.query.asleep_overhang = 0;  // no other body sleeps
     for (const std::uint32_t body : bodies)
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
             state.query.asleep_overhang =
                 std::max(state.query.asleep_overhang, overhang_of(state.boxes[c], world_queries::tight_box(state, c)));
 }
 
-void note_box(const WorldState& state, std::uint32_t collider) {
+void mark_box_changed(const WorldState& state, std::uint32_t collider) {
     QueryTrees& query = state.query;
     query.ready.store(false, std::memory_order_relaxed);
-    if (!query.kept) return;
-    if (query.place.size() <= collider) query.place.resize(state.colliders.size(), 0);
-    if (query.place[collider] & QueryTrees::is_noted) return;
-    query.place[collider] |= QueryTrees::is_noted;
-    query.noted.push_back(collider);
+    if (!query.built) return;
+    if (query.tree_of.size() <= collider) query.tree_of.resize(state.colliders.size(), 0);
+    if (query.tree_of[collider] & QueryTrees::is_pending) return;
+    query.tree_of[collider] |= QueryTrees::is_pending;
+    query.pending.push_back(collider);
 }
 
 namespace {
 
-/// Where the collider's box belongs: 0, or 1 + the population of its body.
-std::uint8_t place_of(const WorldState& state, std::uint32_t collider) {
+/// Returns the value of QueryTrees::tree_of for the current state of a collider: 0, or 1 + its body's motion state.
+std::uint8_t current_tree(const WorldState& state, std::uint32_t collider) {
     if (!state.collider_ids.alive_at(collider)) return 0;
     const MotionState motion_state = state.bodies.traits[state.colliders[collider].body].motion_state;
     return static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(motion_state));
 }
 
-void fill_trees(const WorldState& state) {
+void build_trees(const WorldState& state) {
     QueryTrees& query = state.query;
     std::array<std::vector<broad::Move>, 3> boxes;
-    query.place.assign(state.colliders.size(), 0);
-    query.noted.clear();
+    query.tree_of.assign(state.colliders.size(), 0);
+    query.pending.clear();
     for (std::uint32_t c = 0; c < state.colliders.size(); ++c) {
-        query.place[c] = place_of(state, c);
-        if (query.place[c] != 0) boxes[query.place[c] - 1u].push_back({c, state.boxes[c]});
+        query.tree_of[c] = current_tree(state, c);
+        if (query.tree_of[c] != 0) boxes[query.tree_of[c] - 1u].push_back({c, state.boxes[c]});
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) query.trees[i].build(boxes[i]);
-    query.kept = true;
+    query.built = true;
 }
 
-void take_over_noted(const WorldState& state) {
+void apply_pending(const WorldState& state) {
     QueryTrees& query = state.query;
-    for (const std::uint32_t c : query.noted) {
-        const auto before = static_cast<std::uint8_t>(query.place[c] & ~QueryTrees::is_noted);
-        const std::uint8_t now = place_of(state, c);
-        query.place[c] = now;
+    for (const std::uint32_t c : query.pending) {
+        const auto before = static_cast<std::uint8_t>(query.tree_of[c] & ~QueryTrees::is_pending);
+        const std::uint8_t now = current_tree(state, c);
+        query.tree_of[c] = now;
         if (before != 0 && before == now) {
             query.trees[now - 1u].move(c, state.boxes[c]);
         } else {
@@ -101,22 +102,22 @@ void take_over_noted(const WorldState& state) {
             if (now != 0) query.trees[now - 1u].insert(c, state.boxes[c]);
         }
     }
-    query.noted.clear();
+    query.pending.clear();
     for (broad::WideBvh& tree : query.trees) tree.commit();
 }
 
-void bring_up_to_date(const WorldState& state) {
+void update_trees(const WorldState& state) {
     QueryTrees& query = state.query;
-    if (query.kept) {
-        take_over_noted(state);
+    if (query.built) {
+        apply_pending(state);
     } else {
-        fill_trees(state);
+        build_trees(state);
     }
     if (query.bodies_moved) {
         find_outliers(state);
         query.bodies_moved = false;
     }
-    // A stray may have been edited or removed since.
+    // An outlier may have been edited or removed since it was found.
     std::erase_if(query.outliers, [&](const broad::Move& m) { return !state.collider_ids.alive_at(m.proxy); });
     for (broad::Move& outlier : query.outliers) outlier.box = world_queries::tight_box(state, outlier.proxy);
     query.ready.store(true, std::memory_order_release);
@@ -124,24 +125,25 @@ void bring_up_to_date(const WorldState& state) {
 
 }  // namespace
 
-void world_queries::make_ready(const WorldState& state) {
+void world_queries::prepare_trees(const WorldState& state) {
     QueryTrees& query = state.query;
-    if (!query.asked.load(std::memory_order_relaxed)) query.asked.store(true, std::memory_order_relaxed);
+    if (!query.queried.load(std::memory_order_relaxed)) query.queried.store(true, std::memory_order_relaxed);
     if (query.ready.load(std::memory_order_acquire)) return;
     const std::lock_guard guard(query.lock);
-    if (!query.ready.load(std::memory_order_relaxed)) bring_up_to_date(state);
+    if (!query.ready.load(std::memory_order_relaxed)) update_trees(state);
 }
 
 void update_query_trees(WorldState& state) {
-    constexpr std::uint32_t patience = 60;  // steps
+    constexpr std::uint32_t max_unused_steps = 60;
     QueryTrees& query = state.query;
-    query.steps_unasked = query.asked.exchange(false, std::memory_order_relaxed) ? 0 : query.steps_unasked + 1;
-    if (!query.kept) return;
-    if (query.steps_unasked < patience) return bring_up_to_date(state);
+    query.steps_without_query =
+        query.queried.exchange(false, std::memory_order_relaxed) ? 0 : query.steps_without_query + 1;
+    if (!query.built) return;
+    if (query.steps_without_query < max_unused_steps) return update_trees(state);
     for (broad::WideBvh& tree : query.trees) tree = {};
-    query.place = {};
-    query.noted = {};
-    query.kept = false;
+    query.tree_of = {};
+    query.pending = {};
+    query.built = false;
 }
 
 }  // namespace fase

@@ -1,5 +1,5 @@
 #pragma once
-/// Everything a world holds, as flat arrays, and the stages of its step.
+/// The state of a world as flat arrays, and the stages of its step.
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -8,7 +8,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "fase/broad/any_structure.hpp"
 #include "fase/broad/wide_bvh.hpp"
 #include "fase/core/ids.hpp"
 #include "fase/core/tasks.hpp"
@@ -16,8 +15,10 @@
 #include "fase/dynamics/solver/contact.hpp"
 #include "fase/dynamics/solver/islands.hpp"
 #include "fase/dynamics/solver/solver.hpp"
+#include "fase/pairs/box_sets.hpp"
 #include "fase/pairs/detail/sort_pairs.hpp"
 #include "fase/pairs/filter.hpp"
+#include "fase/pairs/pair_list.hpp"
 #include "fase/world/body.hpp"
 #include "fase/world/detail/sleepers.hpp"
 #include "fase/world/events.hpp"
@@ -26,15 +27,15 @@
 
 namespace fase {
 
-/// One shape on a body, as the step reads it.
+/// A collider: one shape on a body, in the form that the step reads.
 struct Collider {
     std::uint32_t body = no_index;
     std::uint32_t next = no_index;  ///< the body's next collider
     std::uint32_t shape = 0;        ///< index of WorldState::shapes
     bool sensor = false;
     bool unused[3] = {};
-    LocalPose in_principal;  ///< of the shape in the frame of centre of mass and principal axes
-    LocalPose in_body;
+    LocalPose in_principal;  ///< pose of the shape in the frame of the centre of mass and the principal axes
+    LocalPose in_body;       ///< pose of the shape in the body's frame
     Material material;
     float density = 0;
     std::uint16_t unused_tail[2] = {};
@@ -42,7 +43,7 @@ struct Collider {
     std::uint64_t user = 0;
 };
 
-/// A shape shared by all colliders that have an equal one.
+/// A shape that all colliders with an equal shape share.
 struct SharedShape {
     Shape shape;
     std::uint32_t users = 0;
@@ -50,56 +51,42 @@ struct SharedShape {
     std::uint64_t key = 0;  ///< hash of the content
 };
 
-/// Pairs of colliders whose grown boxes overlap, sorted, each with the index of its contact.
-struct PairList {
-    std::vector<broad::Pair> pairs;
-    std::vector<std::uint32_t> contacts;
-    [[nodiscard]] std::size_t size() const { return pairs.size(); }
-    void clear() {
-        pairs.clear();
-        contacts.clear();
-    }
-    void add(broad::Pair pair, std::uint32_t contact) {
-        pairs.push_back(pair);
-        contacts.push_back(contact);
-    }
+/// Whether an island may fall asleep.
+struct IslandActivity {
+    std::uint32_t bodies = 0, active_bodies = 0;
+    bool must_stay_awake = false;  ///< a body moves too fast, or may not sleep
 };
 
-/// How an island rests.
-struct IslandRest {
-    std::uint32_t bodies = 0, restless = 0;
-    bool forbidden = false;  ///< somebody moves too fast, or may not sleep
-};
-
-/// What happened to a collider's box since the last step.
+/// What happened to a collider since the last step, as bits.
 enum ColliderChange : std::uint8_t {
-    moved_box = 1,  ///< it left its grown box
-    edited = 2,     ///< the user made, moved, changed or removed it
-    crossed = 4,    ///< its body is on the way between awake and asleep; set within sort_out_pairs() alone
+    moved_box = 1,      ///< it left its fat box
+    edited = 2,         ///< the user added, moved, changed or removed it
+    state_changed = 4,  ///< the motion state of its body changed; set only inside update_pair_lists()
 };
 
-/// The trees that queries between steps go through, and what they know of the boxes beyond the boxes
-/// (world/detail/query_trees.hpp). The sets of the broad phase are made for finding pairs; rays want a tree. The trees
-/// stand from the first query on: what changes is noted, and taken over at the end of each step, or by the first query
-/// after an edit, under the lock. A world that nobody asks for long lets go of them. No part of hash or snapshot, and
-/// no stage that moves anything reads it.
+/// The trees that queries between steps traverse, one for each motion state (world/detail/query_trees.hpp). The
+/// structures of the broad phase are chosen for pair finding; rays need a tree. The first query builds the trees.
+/// Later changes are recorded, and applied at the end of each step or by the first query after an edit, under the lock.
+/// Query trees are freed after 60 steps without a query. They are no part of hash or snapshot, and no stage of the
+/// simulation reads them.
 struct QueryTrees {
-    std::atomic<bool> ready = false;  ///< the trees are committed, and all that follows is current
-    std::atomic<bool> asked = false;  ///< since the last step
+    std::atomic<bool> ready = false;    ///< the trees are committed, and all members below are current
+    std::atomic<bool> queried = false;  ///< a query ran since the last step
     std::mutex lock;
-    bool kept = false;  ///< the trees stand
-    std::uint32_t steps_unasked = 0;
+    bool built = false;  ///< the trees exist
+    std::uint32_t steps_without_query = 0;
     std::array<broad::WideBvh, 3> trees;  ///< by MotionState
-    /// By collider: 0, or 1 + the population in whose tree its box stands; `is_noted` while it is in `noted`.
-    std::vector<std::uint8_t> place;
-    static constexpr std::uint8_t is_noted = 0x80;
-    std::vector<std::uint32_t> noted;  ///< colliders that came, went, moved or changed their population
+    /// By collider: 0 when it is in no tree, else 1 + the MotionState of its tree. The bit `is_pending` is set while
+    /// the collider is in `pending`.
+    std::vector<std::uint8_t> tree_of;
+    static constexpr std::uint8_t is_pending = 0x80;
+    std::vector<std::uint32_t> pending;  ///< colliders that were added, removed or moved, or changed their motion state
 
-    bool bodies_moved = true;  ///< a step moved bodies since `strays` and `awake_overhang` were found
-    /// Metres by which shapes may stick out of the boxes that stand for them in the tree, on every side.
+    bool bodies_moved = true;  ///< a step moved bodies since `outliers` and `awake_overhang` were computed
+    /// Metres by which shapes may stick out of their boxes in the tree, on every side.
     float asleep_overhang = 0, awake_overhang = 0;
-    /// The few awake colliders that stick out farthest, by index, with their boxes as they are: they count in no
-    /// overhang.
+    /// The few awake colliders that stick out farthest, by index, with their current boxes. They do not count in the
+    /// overhangs.
     std::vector<broad::Move> outliers;
 };
 
@@ -112,7 +99,7 @@ struct WorldState {
     dynamics::Bodies bodies;
     IdPool<ColliderTag> collider_ids;
     std::vector<Collider> colliders;
-    std::vector<Aabb> boxes;            ///< grown, by collider
+    std::vector<Aabb> boxes;            ///< fat boxes, by collider
     std::vector<std::uint8_t> changes;  ///< ColliderChange bits, by collider
     std::vector<SharedShape> shapes;
     std::vector<std::uint32_t> free_shapes;
@@ -120,75 +107,74 @@ struct WorldState {
 
     std::vector<std::uint32_t> awake;  ///< body indices, ascending: dynamic ones and moving kinematic ones
     Sleepers asleep;
-    PairList active;   ///< an awake body in each
-    PairList resting;  ///< none
+    pairs::PairList active;   ///< pairs with at least one awake body
+    pairs::PairList resting;  ///< pairs without an awake body
     std::vector<dynamics::Contact> contacts;
     std::vector<std::uint32_t> free_contacts;
-    std::vector<std::uint32_t> edited_colliders;  ///< to ask for pairs in the next step
-    std::vector<std::uint32_t> wake_wanted;       ///< bodies to wake before the next pairs
+    std::vector<std::uint32_t> edited_colliders;  ///< the next step queries their pairs
+    std::vector<std::uint32_t> bodies_to_wake;    ///< the next step wakes their islands before it finds pairs
     bool removed_any = false;                     ///< pairs of removed colliders may be in the lists
-    bool ask_all = false;                         ///< pairs were dropped: every awake box asks again
+    bool query_all_awake = false;                 ///< pairs were dropped: the next step queries every awake box again
 
     Events events;
     StepReport report;
 
-    // What follows is made anew when needed: no part of hash or snapshot.
+    // The members below are rebuilt when needed. They are no part of hash or snapshot.
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
-    broad::AnyStructure static_boxes, asleep_boxes, awake_boxes;
-    bool picks_structures = false;  ///< each set stands in the structure that suits it
-    mutable QueryTrees query;       // mutable: the first query after a change brings it up to date
+    pairs::BoxSets box_sets;                                             ///< fat boxes of colliders by motion state
+    mutable QueryTrees query;  // mutable: the first query after a change updates it
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;
-    std::vector<float> sweep;  ///< by body: metres a fast body may move in this step, else 0
+    std::vector<float> sweep;  ///< by body: metres that a fast body may move in this step; 0 for slow bodies
     std::vector<broad::Move> query_boxes;
     std::vector<broad::Pair> candidates;
-    std::vector<Aabb> previous_boxes;     ///< by collider: of those in `moved`, the box before this step
-    PairList spare_list;                  ///< what a pair list grows into
-    std::vector<std::uint32_t> moved;     ///< colliders whose box left its grown box in this step
+    std::vector<Aabb> previous_boxes;     ///< by collider, valid for those in `moved`: the fat box before this step
+    std::vector<std::uint32_t> moved;     ///< colliders that left their fat box in this step
     std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
-    std::vector<std::uint8_t> reused;     ///< by active pair: the manifold was kept
+    std::vector<std::uint8_t> reused;     ///< by active pair: the manifold of the last step was reused
     std::vector<std::uint32_t> scratch;
-    std::vector<IslandRest> island_rest;  ///< by island, for the stage "sleep"
+    std::vector<IslandActivity> island_activity;  ///< by island, for the stage "sleep"
     bool stepping = false;
 };
 
-/// The broad-phase set in which a population's boxes stand, to be changed.
-[[nodiscard]] broad::AnyStructure& boxes_of(WorldState& state, MotionState motion_state);
-/// To be told whenever a collider comes, goes, gets another box or its body another population: for the queries' trees.
-void note_box(const WorldState& state, std::uint32_t collider);
-/// To be told whenever the user made, moved, changed or removed a collider: its pairs are looked at in the next step.
-/// Notes its box, too.
-void note_edit(WorldState& state, std::uint32_t collider);
+/// Call when a collider is added or removed, or when its box or the motion state of its body changes. Records the
+/// change for the query trees.
+void mark_box_changed(const WorldState& state, std::uint32_t collider);
+/// Call when a collider is added, removed, moved or changed by the user: the next step checks its pairs. Includes
+/// mark_box_changed().
+void mark_edited(WorldState& state, std::uint32_t collider);
 
-// Lists and populations (world/populations.cpp).
-/// The pose of a collider's shape: rotation in the world, and its place relative to the body's centre of mass.
+// Motion states and pair lists (world/populations.cpp).
+/// Returns the pose of a collider's shape in world axes, with its position relative to the body's centre of mass.
 [[nodiscard]] LocalPose collider_pose(const WorldState& state, const Collider& collider);
-/// The place of a collider's shape in the world.
+/// Returns the world pose of a collider's shape.
 [[nodiscard]] Pose world_pose(const WorldState& state, const Collider& collider);
-/// World box of a collider as it stands, grown by the speculative distance and by `sweep` along the body's velocity.
-[[nodiscard]] Aabb reaching_box(const WorldState& state, std::uint32_t collider, float seconds, float sweep);
-/// Puts bodies from asleep to awake or back, with their boxes and pairs. `bodies` ascending.
+/// Returns the world box of a collider at its current pose, enlarged by the speculative distance and, when `sweep` is
+/// above 0, by the path of `seconds` at the body's velocity.
+[[nodiscard]] Aabb speculative_box(const WorldState& state, std::uint32_t collider, float seconds, float sweep);
+/// Change the motion state of bodies to awake or asleep, and move their boxes and pairs. `bodies` ascending.
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies);
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies);
-/// Notes how far the colliders of these bodies, which have just come to the asleep set, stick out of their boxes there.
-void note_sleepers(const WorldState& state, std::span<const std::uint32_t> bodies);
-/// The pairs of these bodies, whose population is another now, go to the list where they belong: active when a body of
-/// theirs is awake. Costs a glance at each pair.
-void sort_out_pairs(WorldState& state, std::span<const std::uint32_t> bodies);
-/// Asks that the body's island be awake before pairs are sought in the next step.
-void want_awake(WorldState& state, std::uint32_t body);
-/// Wakes the islands of all wanted bodies.
-void wake_wanted_islands(WorldState& state);
-/// A free contact for a pair.
+/// Updates the asleep overhang with the colliders of these bodies, which have just fallen asleep.
+void measure_asleep_overhang(const WorldState& state, std::span<const std::uint32_t> bodies);
+/// Moves the pairs of these bodies, whose motion state has changed, to the right list: active when one of the two
+/// bodies is awake, else resting. O(pairs): reads two bytes of each pair.
+void update_pair_lists(WorldState& state, std::span<const std::uint32_t> bodies);
+/// Requests that the next step wakes the body's island before it finds pairs. Does nothing for a body that is awake or
+/// quarantined.
+void request_wake(WorldState& state, std::uint32_t body);
+/// Wakes the islands of all bodies in `bodies_to_wake`.
+void wake_requested_islands(WorldState& state);
+/// Initialises a free contact for a pair and returns its index.
 [[nodiscard]] std::uint32_t add_contact(WorldState& state, broad::Pair pair);
 
-/// Friction and restitution of a contact from the materials of its colliders.
-void renew_materials(WorldState& state, std::uint32_t contact);
+/// Sets friction and restitution of a contact from the materials of its colliders.
+void update_materials(WorldState& state, std::uint32_t contact);
 
-// The stages of a step, in order; each can be called alone by a test.
+// The stages of a step, in order. Tests can call each alone.
 void refresh_boxes(WorldState& state, float seconds);
 void track_pairs(WorldState& state);
 void collide(WorldState& state, float seconds);
@@ -197,10 +183,10 @@ void solve(WorldState& state, float seconds);
 void finish(WorldState& state, float seconds);
 void publish_events(WorldState& state);
 void fall_asleep(WorldState& state, float seconds);
-/// Brings the trees of queries up to date, where anybody asks.
+/// Updates the query trees when they exist, and frees them when they are unused.
 void update_query_trees(WorldState& state);
 
-/// One whole step: world/step.cpp.
+/// Runs one step: world/step.cpp.
 void step(WorldState& state, float seconds);
 
 }  // namespace fase
