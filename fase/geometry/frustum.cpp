@@ -1,12 +1,12 @@
-/// Frusta from matrices, and their tests against boxes.
+/// Extraction of frusta from matrices, and frustum-box tests.
 #include "fase/geometry/frustum.hpp"
 
-#include <fmt/format.h>
+#include "fase/core/detail/text.hpp"
 
 namespace fase {
 namespace {
 
-/// a·x + b·y + c·z + d >= 0 inside, turned into a unit normal that looks outward.
+/// Converts a·x + b·y + c·z + d >= 0 (inside) to a side with a unit outward normal.
 Frustum::Side side_of(const std::array<double, 4>& row) {
     const Vec3d inward{row[0], row[1], row[2]};
     const double size = length(inward);
@@ -14,7 +14,7 @@ Frustum::Side side_of(const std::array<double, 4>& row) {
     return {inward * (-1 / size), row[3] / size};
 }
 
-/// The corner of the box farthest along the normal. Axes that the normal does not see give 0, not 0 · infinity.
+/// Returns the maximum of dot(normal, p) over the box. An axis with a zero component gives 0, not 0 · infinity.
 double farthest_along(Vec3d normal, const Aabb& box) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
@@ -35,7 +35,7 @@ Result<Frustum> frustum_of(std::span<const float, 16> view_projection, ClipDepth
     };
     for (std::size_t i = 0; i < 16; ++i) {
         if (std::isfinite(view_projection[i])) continue;
-        return Error{Status::BadArgument, "view_projection", fmt::format("element {} is not finite", i), ""};
+        return Error{Status::BadArgument, "view_projection", detail::format("element {} is not finite", i), ""};
     }
     const auto x = row(0), y = row(1), z = row(2), w = row(3);
     Frustum frustum;
@@ -45,12 +45,12 @@ Result<Frustum> frustum_of(std::span<const float, 16> view_projection, ClipDepth
     frustum.sides[3] = side_of(add(w, y, -1));
     frustum.sides[4] = side_of(depth == ClipDepth::ZeroToOne ? z : add(w, z, 1));
     frustum.sides[5] = side_of(add(w, z, -1));
-    int open = 0;
+    int degenerate = 0;
     for (std::size_t i = 0; i < 6; ++i) {
         const Frustum::Side& side = frustum.sides[i];
         if (length_squared(side.normal) > 0) continue;
-        if (i >= 4 && side.offset >= 0 && ++open == 1) continue;
-        return Error{Status::BadArgument, "view_projection", "the planes of its frustum do not enclose anything", ""};
+        if (i >= 4 && side.offset >= 0 && ++degenerate == 1) continue;
+        return Error{Status::BadArgument, "view_projection", "the planes of its frustum enclose no space", ""};
     }
     return frustum;
 }
@@ -58,7 +58,7 @@ Result<Frustum> frustum_of(std::span<const float, 16> view_projection, ClipDepth
 bool overlaps(const Frustum& frustum, const Aabb& box) {
     if (is_empty(box)) return false;
     for (const Frustum::Side& side : frustum.sides) {
-        // NaN (endless both ways) counts as met.
+        // NaN (infinite in both directions) counts as overlap.
         if (-farthest_along(-side.normal, box) > side.offset) return false;
     }
     return true;
@@ -79,12 +79,12 @@ Aabb bounds(const Frustum& frustum) {
         const Frustum::Side& b = frustum.sides[2 + ((corner >> 1) & 1)];
         const Frustum::Side& c = frustum.sides[4 + (corner >> 2)];
         const double volume = dot(a.normal, cross(b.normal, c.normal));
-        const Vec3d at = (cross(b.normal, c.normal) * a.offset + cross(c.normal, a.normal) * b.offset +
-                          cross(a.normal, b.normal) * c.offset) *
-                         (1 / volume);
-        if (!(volume > 1e-9 || volume < -1e-9) || !is_finite(at)) return Aabb::everything();
-        lo = min(lo, at);
-        hi = max(hi, at);
+        const Vec3d point = (cross(b.normal, c.normal) * a.offset + cross(c.normal, a.normal) * b.offset +
+                             cross(a.normal, b.normal) * c.offset) *
+                            (1 / volume);
+        if (!(volume > 1e-9 || volume < -1e-9) || !is_finite(point)) return Aabb::everything();
+        lo = min(lo, point);
+        hi = max(hi, point);
     }
     const double slack = 1e-6 * length(hi - lo);
     const Vec3d out{slack, slack, slack};

@@ -1,5 +1,5 @@
 #pragma once
-/// Shapes as triangles and as points of their surface, for pictures and for hulls of what has no shape of its own.
+/// Shapes as triangle meshes and as surface points, for drawing and for hulls of scaled shapes.
 #include <cstdint>
 #include <vector>
 
@@ -13,12 +13,13 @@ struct TriangleMesh {
     std::vector<std::uint32_t> indices;
 };
 
-/// The surface of a shape. Boxes and hulls are exact; round shapes are cut into `detail` (at least 3, rounded up to
-/// even) segments around their axis, all points lying on the true surface, so that the mesh stays within radius · (1 -
-/// cos²(pi / detail)) of it; a half-space is a square of 200 m. Deterministic: no libm but sqrt.
+/// Triangulates the surface of a shape. Boxes and hulls are exact. Round shapes have `detail` segments around their
+/// axis (at least 4, rounded up to a multiple of 4); all vertices are on the true surface, so that the mesh is within
+/// radius · (1 - cos²(pi / detail)) of it. A half-space is a square of 200 m. Deterministic: uses no libm function
+/// except sqrt.
 [[nodiscard]] TriangleMesh triangles(const Shape& shape, int detail = 32);
 
-/// The positions of triangles(): every corner of a box or hull, points all over the others.
+/// Returns the positions of triangles(): the corners of a box or hull, points on the surface of other shapes.
 [[nodiscard]] std::vector<Vec3> sample_points(const Shape& shape, int detail = 32);
 
 }  // namespace fase

@@ -8,13 +8,13 @@
 namespace fase {
 namespace {
 
-/// A symmetric matrix on its way to diagonal form, and the rotation so far (columns: axes).
+/// A symmetric matrix during diagonalisation, and the accumulated rotation (columns: axes).
 struct Jacobi {
     std::array<std::array<double, 3>, 3> a;
     std::array<std::array<double, 3>, 3> v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-    /// Turns in the plane of axes p and q, by at most 45°, so that a[p][q] becomes 0.
-    void turn(std::size_t p, std::size_t q) {
+    /// Rotates in the plane of axes p and q, by at most 45°, so that a[p][q] becomes 0.
+    void rotate(std::size_t p, std::size_t q) {
         if (a[p][q] == 0) return;
         const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
         const double root = std::sqrt(theta * theta + 1);
@@ -27,9 +27,9 @@ struct Jacobi {
         const double rp = a[r][p], rq = a[r][q];
         a[r][p] = a[p][r] = c * rp - s * rq;
         a[r][q] = a[q][r] = s * rp + c * rq;
-        for (auto& row : v) row = turned(row, p, q, c, s);
+        for (auto& row : v) row = rotated(row, p, q, c, s);
     }
-    static std::array<double, 3> turned(std::array<double, 3> row, std::size_t p, std::size_t q, double c, double s) {
+    static std::array<double, 3> rotated(std::array<double, 3> row, std::size_t p, std::size_t q, double c, double s) {
         const double vp = row[p], vq = row[q];
         row[p] = c * vp - s * vq;
         row[q] = s * vp + c * vq;
@@ -44,13 +44,14 @@ PrincipalInertia principal(const Mat3& inertia) {
     const Mat3d m = to_double(inertia);
     const double xy = (m.x.y + m.y.x) / 2, xz = (m.x.z + m.z.x) / 2, yz = (m.y.z + m.z.y) / 2;
     Jacobi j{{{{m.x.x, xy, xz}, {xy, m.y.y, yz}, {xz, yz, m.z.z}}}};
-    // Convergence is quadratic: 5 or 6 sweeps reach 0; the bound only ends the loop on NaN.
+    // Convergence is quadratic: 5 or 6 sweeps reach 0; the bound ends the loop on NaN only.
     for (int sweep = 0; sweep < 20 && j.off_diagonal() != 0; ++sweep) {
-        j.turn(0, 1);
-        j.turn(0, 2);
-        j.turn(1, 2);
+        j.rotate(0, 1);
+        j.rotate(0, 2);
+        j.rotate(1, 2);
     }
-    // Of the 24 ways to name and point the axes of a right-handed frame, the one with the largest trace turns least.
+    // Of the 24 permutations and signs of the axes that are right-handed, the one with the largest trace has the
+    // smallest rotation angle.
     constexpr std::array<std::array<std::size_t, 3>, 6> orders{
         {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
     Mat3d best;

@@ -1,5 +1,5 @@
 #pragma once
-/// THE list of shapes: the one place that names every shape. Tables, tests, files and docs loop over it.
+/// THE list of shapes. Tables, tests, files and docs loop over it.
 #include <concepts>
 #include <cstddef>
 #include <string_view>
@@ -14,13 +14,14 @@
 
 namespace fase {
 
-/// Anything with a name.
+/// A type with a name.
 template <class S>
 concept NamedShape = requires {
     { S::name } -> std::convertible_to<std::string_view>;
 };
 
-/// A bounded convex shape: a core with support points, grown by a radius (a sphere is a point grown by its radius).
+/// A bounded convex shape: the Minkowski sum of a core with a support function and a sphere of radius core_radius(). A
+/// sphere has a point as its core.
 template <class S>
 concept ConvexShape = NamedShape<S> && requires(const S& shape, Vec3 f, Vec3d d) {
     { shape.core_support(f) } -> std::same_as<Vec3>;
@@ -28,7 +29,7 @@ concept ConvexShape = NamedShape<S> && requires(const S& shape, Vec3 f, Vec3d d)
     { shape.core_radius() } -> std::convertible_to<float>;
 };
 
-/// A list of shapes; its order is the order of the kinds in tables and files.
+/// A list of shapes; its order defines the kind indices in tables and files.
 template <NamedShape... S> struct ShapeList {
     using Variant = std::variant<S...>;
     static constexpr std::size_t count = sizeof...(S);
@@ -38,11 +39,11 @@ using AllShapes = ShapeList<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpac
 /// Any one shape.
 using Shape = AllShapes::Variant;
 
-/// Calls f.operator()<S>() for every shape of the list, in its order.
+/// Calls f.operator()<S>() for every shape of the list, in list order.
 template <class F, class... S> void for_each_shape(F&& f, ShapeList<S...>) { (f.template operator()<S>(), ...); }
 template <class F> void for_each_shape(F&& f) { for_each_shape(f, AllShapes{}); }
 
-/// The shape's name as in the list: "sphere", "box" …
+/// Returns the name of the shape's kind: "sphere", "box" …
 [[nodiscard]] inline std::string_view name_of(const Shape& shape) {
     return std::visit([]<class S>(const S&) { return S::name; }, shape);
 }

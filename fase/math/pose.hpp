@@ -1,16 +1,16 @@
 #pragma once
-/// Where something is and how it is turned: LocalPose in float (inside a body or between two), Pose in the world.
+/// Position and rotation: LocalPose in float (within a body or between two), Pose in the world.
 #include "fase/math/quat.hpp"
 
 namespace fase {
 
-/// A rigid motion in float: first turn by `rotation`, then move by `position`. "b_in_a" takes b's points to a's frame.
+/// A rigid transform in float: rotates by `rotation`, then translates by `position`. "b_in_a" maps b's frame to a's.
 struct LocalPose {
     Vec3 position{};
     Quat rotation{};
     friend constexpr bool operator==(const LocalPose&, const LocalPose&) = default;
 };
-/// A body's place in the world: position in double, so that 1e7 m from the origin a micrometre is still seen.
+/// A pose in the world: position in double, so that it resolves a micrometre at 1e7 m from the origin.
 struct Pose {
     Vec3d position{};
     Quat rotation{};
@@ -27,7 +27,7 @@ constexpr Vec3d transform(const Pose& pose, Vec3 point) {
 constexpr Vec3 transform_back(const Pose& pose, Vec3d point) {
     return rotate_back(pose.rotation, to_float(point - pose.position));
 }
-/// First b, then a. The rotation is not normalised again.
+/// Applies b, then a. The rotation is not renormalised.
 constexpr LocalPose operator*(const LocalPose& a, const LocalPose& b) {
     return {transform(a, b.position), a.rotation * b.rotation};
 }
@@ -38,7 +38,7 @@ constexpr LocalPose inverse(const LocalPose& pose) {
     const Quat back = conjugate(pose.rotation);
     return {-rotate(back, pose.position), back};
 }
-/// b seen from a: takes points of b's frame to a's. The difference of positions is taken in double.
+/// Returns b in a's frame: maps points of b's frame to a's. Subtracts the positions in double.
 constexpr LocalPose relative(const Pose& a, const Pose& b) {
     const Quat back = conjugate(a.rotation);
     return {rotate(back, to_float(b.position - a.position)), back * b.rotation};

@@ -1,10 +1,10 @@
 #pragma once
-/// Three numbers: a vector or a point, in float (Vec3) for differences and in double (Vec3d) for places in the world.
+/// Vectors and points: float (Vec3) for local coordinates, double (Vec3d) for world positions.
 #include <cmath>
 
 namespace fase {
 
-/// Three numbers of type T; metres, metres a second or dimensionless, as the name of the variable says.
+/// Three components of type T; metres, metres per second or dimensionless, as the variable's name says.
 template <class T> struct Vec3Of {
     T x = 0, y = 0, z = 0;
     friend constexpr bool operator==(Vec3Of, Vec3Of) = default;
@@ -28,14 +28,14 @@ template <class T> constexpr Vec3Of<T> cross(Vec3Of<T> a, Vec3Of<T> b) {
 }
 template <class T> constexpr T length_squared(Vec3Of<T> a) { return dot(a, a); }
 template <class T> T length(Vec3Of<T> a) { return std::sqrt(dot(a, a)); }
-/// Unit vector along `a`; (0, 0, 0) when a's length is 0 or too small for its square to be seen.
+/// Returns the unit vector along `a`; (0, 0, 0) when a's length is 0 or its square underflows.
 template <class T> Vec3Of<T> normalized(Vec3Of<T> a) {
     const T l = length(a);
     return l > 0 ? a * (1 / l) : Vec3Of<T>{};
 }
-/// Component by component.
+/// The component-wise product.
 template <class T> constexpr Vec3Of<T> multiply(Vec3Of<T> a, Vec3Of<T> b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-/// a < b ? a : b, component by component (so a NaN in `a` gives b).
+/// a < b ? a : b for each component (so a NaN in `a` gives b).
 template <class T> constexpr Vec3Of<T> min(Vec3Of<T> a, Vec3Of<T> b) {
     return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }
@@ -49,11 +49,11 @@ template <class T> bool is_finite(Vec3Of<T> a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Rounded to nearest.
+/// Rounds to nearest.
 constexpr Vec3 to_float(Vec3d a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
 constexpr Vec3d to_double(Vec3 a) { return {a.x, a.y, a.z}; }
 
-/// A unit vector at right angles to the unit vector `n`; continuous but for n near ±z's seam.
+/// Returns a unit vector perpendicular to the unit vector `n`; continuous except where n.z changes its sign.
 /// Source: Duff et al. 2017, Building an orthonormal basis, revisited.
 template <class T> constexpr Vec3Of<T> any_perpendicular(Vec3Of<T> n) {
     const T sign = n.z >= 0 ? T(1) : T(-1);

@@ -1,4 +1,4 @@
-/// Takes a ray to the frame of a shape, and the hit back.
+/// Transforms a ray to the frame of a shape, and the hit back to the world.
 #include "fase/narrow/cast_ray.hpp"
 
 #include "fase/narrow/detail/advance.hpp"
@@ -7,7 +7,7 @@
 namespace fase::narrow {
 namespace {
 
-/// There is a ray_hit() of exactly this signature.
+/// Whether there is a ray_hit() of exactly this signature.
 template <class S>
 concept HasRayHit = requires {
     static_cast<std::optional<LocalHit> (*)(const S&, const LocalRay&)>(&ray_hit);
@@ -18,7 +18,7 @@ std::optional<LocalHit> general_hit(const Shape& shape, const LocalRay& ray) {
     start.position = ray.origin;
     const auto stop = advance(shape, Sphere{0}, start, ray.direction, ray.length);
     if (!stop) return std::nullopt;
-    return LocalHit{stop->at, stop->normal, stop->from_start};
+    return LocalHit{stop->distance, stop->normal, stop->from_start};
 }
 
 template <class F> std::optional<RayOnShape> cast(const Pose& pose, const Ray& ray, const F& hit_in_frame) {
@@ -27,7 +27,7 @@ template <class F> std::optional<RayOnShape> cast(const Pose& pose, const Ray& r
                          rotate_back(rotation, to_double(ray.direction)), ray.length};
     const std::optional<LocalHit> hit = hit_in_frame(local);
     if (!hit) return std::nullopt;
-    return RayOnShape{hit->at, hit->inside ? -ray.direction : to_float(rotate(rotation, hit->normal))};
+    return RayOnShape{hit->distance, hit->inside ? -ray.direction : to_float(rotate(rotation, hit->normal))};
 }
 
 }  // namespace

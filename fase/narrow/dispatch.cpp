@@ -1,4 +1,4 @@
-/// The table of all pairs of shapes. A new special pair needs one include here, and nothing else.
+/// The table of all pairs of shapes. A new special pair needs one include here only.
 #include "fase/narrow/dispatch.hpp"
 
 #include <array>
@@ -27,13 +27,13 @@
 namespace fase::narrow {
 namespace {
 
-/// There is a function of exactly this signature; overloads that would need a conversion do not count.
+/// Whether there is a function of exactly this signature, without conversions.
 template <class A, class B>
 concept HasSpecial = requires {
     static_cast<Manifold (*)(const A&, const B&, const LocalPose&, float)>(&collide);
 };
 
-/// The special function if there is one, for (A, B) or for (B, A) turned round; else the general one.
+/// Calls the special function for (A, B), or that for (B, A) with a flipped result; else the general function.
 template <class A, class B> Manifold collide_best(const A& a, const B& b, const LocalPose& b_in_a, float margin) {
     if constexpr (HasSpecial<A, B>) {
         return collide(a, b, b_in_a, margin);
@@ -44,7 +44,7 @@ template <class A, class B> Manifold collide_best(const A& a, const B& b, const 
     }
 }
 
-/// Every job of the batch has an A and a B: one indirect call a batch, none a pair.
+/// Runs a batch of jobs of kinds A and B: one indirect call per batch, none per pair.
 template <class A, class B> void run(std::span<const CollideJob> batch) {
     for (const CollideJob& job : batch) {
         *job.out = collide_best(*std::get_if<A>(job.a), *std::get_if<B>(job.b), job.b_in_a, job.margin);

@@ -1,5 +1,5 @@
 #pragma once
-/// From two shapes to the function that collides them, in a table made by the compiler from the list of shapes.
+/// Dispatches a pair of shapes to its collide function, by a table generated at compile time from the list of shapes.
 #include <cstddef>
 #include <span>
 
@@ -9,12 +9,12 @@
 
 namespace fase::narrow {
 
-/// The contact of any two shapes: points closer than `margin` metres (0 or more; separation <= margin). `b_in_a` takes
-/// b's frame to a's; the manifold is in a's frame, normal from a to b. No points: farther apart; or both are
-/// half-spaces. Deterministic, thread-safe, allocates nothing.
+/// Returns the contact of any two shapes: points with separation <= `margin` metres (0 or more). `b_in_a` maps b's
+/// frame to a's; the manifold is in a's frame, its normal from a to b. No points when the shapes are farther apart, or
+/// when both are half-spaces. Deterministic, thread-safe, allocates nothing.
 [[nodiscard]] Manifold collide(const Shape& a, const Shape& b, const LocalPose& b_in_a, float margin);
 
-/// One call of collide() in a batch; `out` takes the manifold. All pointers must be valid, the `out` distinct.
+/// One call of collide() in a batch; `out` receives the manifold. All pointers must be valid, all `out` distinct.
 struct CollideJob {
     const Shape* a = nullptr;
     const Shape* b = nullptr;
@@ -23,12 +23,12 @@ struct CollideJob {
     Manifold* out = nullptr;
 };
 
-/// collide() for every job, in order. Neighbours of the same two kinds share one indirect call: jobs sorted by kinds
-/// run fastest. Same results as collide(). Thread-safe as long as no two threads write to the same `out`.
+/// Runs collide() for every job, in order. Consecutive jobs of the same two kinds share one indirect call, so jobs
+/// sorted by kinds run fastest. Same results as collide(). Thread-safe while no two threads write to the same `out`.
 void collide_batch(std::span<const CollideJob> jobs);
 
-/// Is there a function of its own for these kinds of shape (indices into AllShapes, in this order or the other), or
-/// does the general path do it? False for indices past the list.
+/// Whether these kinds of shape (indices into AllShapes, in either order) have a specialised function; false: the
+/// general path handles them. False for indices past the list.
 [[nodiscard]] bool has_special_pair(std::size_t kind_a, std::size_t kind_b);
 
 }  // namespace fase::narrow

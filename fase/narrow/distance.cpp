@@ -1,4 +1,4 @@
-/// The signed distance of any two shapes with the points that show it, in double.
+/// The signed distance of any two shapes with its witness points, in double.
 #include "fase/narrow/distance.hpp"
 
 #include <limits>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// From closest points of cores, or any pair of them at that distance along the normal, to those of the surfaces.
+/// Converts the distance of the cores and a closest point on a's core to those of the surfaces.
 Distance with_radii(double core_distance, Vec3d on_a, Vec3d normal, double radius_a, double radius_b) {
     Distance result;
     result.distance = core_distance - radius_a - radius_b;
@@ -20,7 +20,7 @@ Distance with_radii(double core_distance, Vec3d on_a, Vec3d normal, double radiu
     return result;
 }
 
-Distance of_cores(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
+Distance distance_of_cores(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
     const GjkResult apart = gjk(a, b, b_in_a);
     const bool overlap = apart.state == GjkResult::State::Overlap;
     if (!overlap && apart.distance > 1e-7 * apart.scale) {
@@ -28,40 +28,40 @@ Distance of_cores(const CoreView& a, const CoreView& b, const TransformD& b_in_a
     }
     PenetrationOptions options;
     options.tolerance = 1e-10 * apart.scale;
-    Penetration way = penetration(a, b, b_in_a, apart.simplex, options);
-    // So close that neither distance nor normal of GJK can be trusted: what counts is the wider proven gap.
+    Penetration deepest = penetration(a, b, b_in_a, apart.simplex, options);
+    // Too close for the distance and normal of GJK to be exact: takes the larger proven gap.
     if (!overlap) {
         const double gap = -depth_along(a, b, b_in_a, apart.normal);
-        if (gap > -way.depth) return with_radii(gap, apart.on_a, apart.normal, a.radius, b.radius);
+        if (gap > -deepest.depth) return with_radii(gap, apart.on_a, apart.normal, a.radius, b.radius);
     }
-    GjkResult touch = moved_apart(a, b, b_in_a, way, apart.scale);
-    // On curved cores the normal there is better than the one that led there, as long as that depth is less.
-    for (int i = 0; i < 12 && way.state != Penetration::State::Exact; ++i) {
+    GjkResult touch = gjk_after_separation(a, b, b_in_a, deepest, apart.scale);
+    // On curved cores the normal at the touch is better than that of the penetration, while its depth is smaller.
+    for (int i = 0; i < 12 && deepest.state != Penetration::State::Exact; ++i) {
         const double depth = depth_along(a, b, b_in_a, touch.normal);
-        if (!(depth < way.depth)) break;
-        way.normal = touch.normal;
-        way.depth = depth;
-        touch = moved_apart(a, b, b_in_a, way, apart.scale);
+        if (!(depth < deepest.depth)) break;
+        deepest.normal = touch.normal;
+        deepest.depth = depth;
+        touch = gjk_after_separation(a, b, b_in_a, deepest, apart.scale);
     }
-    return with_radii(-way.depth, touch.on_a, way.normal, a.radius, b.radius);
+    return with_radii(-deepest.depth, touch.on_a, deepest.normal, a.radius, b.radius);
 }
 
-/// a is the half-space.
-Distance of_ground(const CoreView& b, const TransformD& b_in_a) {
+/// The distance of a half-space (a) and a convex shape (b).
+Distance distance_from_half_space(const CoreView& b, const TransformD& b_in_a) {
     const Vec3d lowest = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, {0, -1, 0})));
     return with_radii(lowest.y, {lowest.x, 0, lowest.z}, {0, 1, 0}, 0, b.radius);
 }
 
-Distance of_two_grounds(const TransformD& b_in_a) {
+Distance distance_of_half_spaces(const TransformD& b_in_a) {
     const Vec3d up{0, 1, 0}, up_b = b_in_a.rotation.y;
     Distance result;
     result.normal = up;
     const bool facing = up_b.y < 0 && std::abs(up_b.x) < 1e-12 && std::abs(up_b.z) < 1e-12;
-    const Vec3d at = b_in_a.position;
-    result.on_a = {at.x, 0, at.z};
+    const Vec3d position = b_in_a.position;
+    result.on_a = {position.x, 0, position.z};
     if (facing) {
-        result.distance = at.y;
-        result.on_b = at;
+        result.distance = position.y;
+        result.on_b = position;
     } else {
         result.distance = -infinity;
         result.on_b = result.on_a;
@@ -79,13 +79,13 @@ Distance signed_distance(const Shape& a, const Shape& b, const TransformD& b_in_
     return std::visit(
         [&]<class A, class B>(const A& s, const B& t) -> Distance {
             if constexpr (ConvexShape<A> && ConvexShape<B>) {
-                return of_cores(core_view(s), core_view(t), b_in_a);
+                return distance_of_cores(core_view(s), core_view(t), b_in_a);
             } else if constexpr (ConvexShape<B>) {
-                return of_ground(core_view(t), b_in_a);
+                return distance_from_half_space(core_view(t), b_in_a);
             } else if constexpr (ConvexShape<A>) {
-                return flipped(of_ground(core_view(s), inverse(b_in_a)), b_in_a);
+                return flipped(distance_from_half_space(core_view(s), inverse(b_in_a)), b_in_a);
             } else {
-                return of_two_grounds(b_in_a);
+                return distance_of_half_spaces(b_in_a);
             }
         },
         a, b);

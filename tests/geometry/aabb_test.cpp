@@ -27,7 +27,7 @@ TEST(Aabb, by_default_is_empty_and_overlaps_nothing) {
     EXPECT_FALSE(is_empty({{1, 1, 1}, {1, 1, 1}})) << "a point is a box";
 }
 
-TEST(Aabb, that_only_touch_overlap) {
+TEST(Aabb, boxes_that_touch_overlap) {
     const Aabb box{{0, 0, 0}, {1, 1, 1}};
     EXPECT_TRUE(overlaps(box, {{1, 0, 0}, {2, 1, 1}}));
     EXPECT_TRUE(overlaps(box, {{1, 1, 1}, {1, 1, 1}}));
@@ -38,7 +38,7 @@ TEST(Aabb, that_only_touch_overlap) {
     EXPECT_TRUE(contains(box, Vec3{1, 0, 1}));
 }
 
-TEST(Aabb, overlap_when_and_only_when_they_share_a_point) {
+TEST(Aabb, boxes_overlap_if_and_only_if_they_share_a_point) {
     Random random(1);
     for (int round = 0; round < 10000; ++round) {
         const Aabb a = random_box(random), b = random_box(random);
@@ -48,11 +48,11 @@ TEST(Aabb, overlap_when_and_only_when_they_share_a_point) {
         const Aabb both = merge(a, b);
         ASSERT_TRUE(contains(both, a) && contains(both, b));
         ASSERT_TRUE(contains(a, centre(a)));
-        ASSERT_TRUE(contains(grown(a, 0.1f), a));
+        ASSERT_TRUE(contains(enlarged(a, 0.1f), a));
     }
 }
 
-TEST(Aabb, rounded_outward_holds_the_double_box_and_no_more_than_the_next_float) {
+TEST(Aabb, rounded_outward_contains_the_double_box_and_no_more_than_the_next_float) {
     Random random(2);
     for (int round = 0; round < 10000; ++round) {
         const double size = std::pow(10.0, random.between(-40, 37));
@@ -65,12 +65,12 @@ TEST(Aabb, rounded_outward_holds_the_double_box_and_no_more_than_the_next_float)
             ASSERT_LE(box.hi[axis], std::nextafter(box.lo[axis], Aabb::infinity));
         }
     }
-    EXPECT_EQ(rounded_outward({1, 2, 3}, {4, 5, 6}), (Aabb{{1, 2, 3}, {4, 5, 6}})) << "floats stay as they are";
+    EXPECT_EQ(rounded_outward({1, 2, 3}, {4, 5, 6}), (Aabb{{1, 2, 3}, {4, 5, 6}})) << "floats do not change";
 }
 
 TEST(Aabb, surface_area_counts_six_sides) { EXPECT_EQ(surface_area({{0, 0, 0}, {1, 2, 3}}), 22); }
 
-TEST(Plane, distance_is_positive_where_the_normal_looks) {
+TEST(Plane, distance_is_positive_on_the_side_of_the_normal) {
     const Plane plane{{0, 0, 1}, 2};
     EXPECT_EQ(signed_distance(plane, {5, 5, 3}), 1);
     EXPECT_EQ(signed_distance(plane, {5, 5, 0}), -2);

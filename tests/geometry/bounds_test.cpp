@@ -1,4 +1,4 @@
-/// World boxes: never too small, hardly ever too large; the balls around and in a shape.
+/// World bounds: never too small and tight; outer and inner radii.
 #include "fase/geometry/bounds.hpp"
 
 #include <gtest/gtest.h>
@@ -16,13 +16,13 @@ using Vec3e = Vec3Of<Exact>;
 Vec3e exact(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3e exact(Vec3d v) { return {v.x, v.y, v.z}; }
 
-/// The rotation that the pose stands for: its quaternion made unit in long double.
+/// The rotation of the pose: its quaternion normalised in long double.
 QuatOf<Exact> exact_rotation(const Pose& pose) {
     const Quat q = pose.rotation;
     return normalized(QuatOf<Exact>{q.x, q.y, q.z, q.w});
 }
 
-/// The world box in long double, from the support function of the shape; nothing of bounds() is used.
+/// The world box in long double, from the support function of the shape; independent of bounds().
 struct ExactBox {
     Vec3e lo, hi;
 };
@@ -47,7 +47,7 @@ template <ConvexShape S> ExactBox exact_box(const S& shape, const Pose& pose) {
     return box;
 }
 
-bool holds(const Aabb& box, Vec3e p) {
+bool contains_point(const Aabb& box, Vec3e p) {
     return Exact(box.lo.x) <= p.x && p.x <= Exact(box.hi.x) && Exact(box.lo.y) <= p.y && p.y <= Exact(box.hi.y) &&
            Exact(box.lo.z) <= p.z && p.z <= Exact(box.hi.z);
 }
@@ -58,7 +58,7 @@ Pose random_pose(Random& random, float range) {
     return {position, random.below(8) == 0 ? Quat{} : test::random_rotation(random)};
 }
 
-/// A quaternion as the integrator may leave it: some float roundings off unit length.
+/// A quaternion as after integration: some float roundings off unit length.
 Quat slightly_off(Quat q, Random& random) {
     const float s = 1 + random.between(-6, 6) * 0x1p-23f;
     return {q.x * s, q.y * s, q.z * s, q.w * s};
@@ -66,7 +66,7 @@ Quat slightly_off(Quat q, Random& random) {
 
 constexpr float ranges[] = {0, 1, 100, 1e4f, 1e6f, 1e7f};
 
-TEST(Bounds, hold_the_exact_box_of_every_bounded_shape_and_are_tight) {
+TEST(Bounds, contain_the_exact_box_of_every_bounded_shape_and_are_tight) {
     Random random(1);
     for_each_shape([&]<class S>() {
         if constexpr (ConvexShape<S>) {
@@ -78,14 +78,14 @@ TEST(Bounds, hold_the_exact_box_of_every_bounded_shape_and_are_tight) {
                     pose.rotation = slightly_off(pose.rotation, random);
                     const Aabb box = bounds(shape, pose);
                     const ExactBox truth = exact_box(shape, pose);
-                    ASSERT_TRUE(holds(box, truth.lo)) << S::name << " at range " << range;
-                    ASSERT_TRUE(holds(box, truth.hi)) << S::name << " at range " << range;
+                    ASSERT_TRUE(contains_point(box, truth.lo)) << S::name << " at range " << range;
+                    ASSERT_TRUE(contains_point(box, truth.hi)) << S::name << " at range " << range;
                     const Exact reach = length(truth.hi - truth.lo) / 2 + outer_radius(shape);
                     for (int axis = 0; axis < 3; ++axis) {
-                        for (const auto& [found, right] :
+                        for (const auto& [found, expected] :
                              {std::pair{box.lo[axis], truth.lo[axis]}, {box.hi[axis], truth.hi[axis]}}) {
                             const Exact two_units = std::abs(Exact(found)) * 0x1p-22L;
-                            const Exact excess = std::abs(found - right) - two_units;
+                            const Exact excess = std::abs(found - expected) - two_units;
                             worst = std::max(worst, double(excess / reach));
                         }
                     }
@@ -97,8 +97,8 @@ TEST(Bounds, hold_the_exact_box_of_every_bounded_shape_and_are_tight) {
     });
 }
 
-/// Where the position takes the reach away, the rounding to float hides nothing of what came before it.
-TEST(Bounds, hold_the_exact_box_also_when_a_side_of_it_lies_at_zero) {
+/// Where position and extent cancel, the final rounding to float does not hide earlier errors.
+TEST(Bounds, contain_the_exact_box_also_when_a_side_of_it_is_at_zero) {
     Random random(6);
     for_each_shape([&]<class S>() {
         if constexpr (ConvexShape<S>) {
@@ -110,14 +110,14 @@ TEST(Bounds, hold_the_exact_box_also_when_a_side_of_it_lies_at_zero) {
                 pose.position = {-double(side.x), -double(side.y), -double(side.z)};
                 const ExactBox truth = exact_box(shape, pose);
                 const Aabb box = bounds(shape, pose);
-                ASSERT_TRUE(holds(box, truth.lo)) << S::name;
-                ASSERT_TRUE(holds(box, truth.hi)) << S::name;
+                ASSERT_TRUE(contains_point(box, truth.lo)) << S::name;
+                ASSERT_TRUE(contains_point(box, truth.hi)) << S::name;
             }
         }
     });
 }
 
-TEST(Bounds, hold_random_points_of_the_surface_and_the_inside) {
+TEST(Bounds, contain_points_of_the_surface) {
     Random random(2);
     for (int round = 0; round < 300; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
@@ -126,15 +126,15 @@ TEST(Bounds, hold_random_points_of_the_surface_and_the_inside) {
             const Aabb box = bounds(shape, pose);
             for (const Vec3 p : sample_points(shape, 12)) {
                 if (std::holds_alternative<HalfSpace>(shape)) continue;
-                // Points of the mesh are rounded to float and may stand out by that.
+                // Mesh vertices are rounded to float and may be outside by that error.
                 const Vec3e inside = exact(p) * (1 - 0x1p-22L);
-                ASSERT_TRUE(holds(box, exact(pose.position) + rotate(rotation, inside))) << name_of(shape);
+                ASSERT_TRUE(contains_point(box, exact(pose.position) + rotate(rotation, inside))) << name_of(shape);
             }
         }
     }
 }
 
-TEST(Bounds, of_a_turned_box_are_its_half_sizes_times_the_absolute_matrix) {
+TEST(Bounds, of_a_rotated_box_are_its_half_sizes_times_the_absolute_matrix) {
     const Pose pose{{10, 20, 30}, rotation_about(Vec3{0, 0, 1}, 0.78539816f)};
     const Aabb box = bounds(Box{{1, 1, 1}}, pose);
     const float diagonal = std::sqrt(2.0f);
@@ -144,14 +144,14 @@ TEST(Bounds, of_a_turned_box_are_its_half_sizes_times_the_absolute_matrix) {
     EXPECT_NEAR(box.hi.z, 31, 4e-6f);
 }
 
-TEST(Bounds, of_an_unturned_box_are_at_most_two_units_in_the_last_place_too_large) {
+TEST(Bounds, of_an_unrotated_box_are_at_most_two_units_in_the_last_place_too_large) {
     Random random(3);
     for (int round = 0; round < 1000; ++round) {
         const Box shape = test::random_shape<Box>(random);
         const Aabb box = bounds(shape, {{}, {}});
         for (int axis = 0; axis < 3; ++axis) {
             const float half = shape.half[axis];
-            // Beside a far larger side, the roundings of the matrix may show.
+            // Next to a far larger side, the roundings of the matrix may be visible.
             const float slack = outer_radius(shape) * 0x1p-45f;
             const float two_up = std::nextafter(std::nextafter(half, 1e9f), 1e9f);
             ASSERT_GE(box.hi[axis], half);
@@ -161,9 +161,9 @@ TEST(Bounds, of_an_unturned_box_are_at_most_two_units_in_the_last_place_too_larg
     }
 }
 
-TEST(Bounds, of_a_half_space_end_only_at_an_axis_aligned_plane) {
+TEST(Bounds, of_a_half_space_are_limited_only_by_an_axis_aligned_plane) {
     constexpr float inf = Aabb::infinity;
-    const float quarter = 0.5f;  // of a quaternion that turns by 90°, squared: exactly equal parts
+    const float quarter = 0.5f;  // squared components of a quaternion of 90°: exactly equal
     const float root = std::sqrt(quarter);
     const auto of = [](Quat q) { return bounds(HalfSpace{}, {{1, 2, 3}, q}); };
     EXPECT_EQ(of({}), (Aabb{{-inf, -inf, -inf}, {inf, 2, inf}}));
@@ -203,7 +203,7 @@ TEST(OuterRadius, is_the_distance_of_the_farthest_point) {
     }
 }
 
-TEST(InnerRadius, fits_inside_around_the_centre) {
+TEST(InnerRadius, sphere_around_the_centre_is_inside) {
     EXPECT_EQ(inner_radius(Sphere{2}), 2);
     EXPECT_EQ(inner_radius(Box{{3, 1, 2}}), 1);
     EXPECT_EQ(inner_radius(Capsule{0.25f, 1}), 0.25f);

@@ -1,4 +1,4 @@
-/// Frusta made from camera matrices, against points taken through the same matrix.
+/// Frusta from camera matrices, compared with points transformed by the same matrix.
 #include "fase/geometry/frustum.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
     return c;
 }
 
-/// Looks along -z; depth as OpenGL has it. far 0: infinitely far.
+/// Looks along -z; OpenGL depth range. far 0: at infinity.
 Matrix perspective(float focal, float aspect, float near, float far) {
     Matrix m{};
     m[0] = focal / aspect;
@@ -54,14 +54,14 @@ std::array<double, 4> clip(const Matrix& m, Vec3 p) {
     }
     return c;
 }
-/// How far inside clip space a point is: below 0 outside.
+/// The depth of a point inside clip space; below 0 outside.
 double depth_inside(const Matrix& m, Vec3 p, ClipDepth depth) {
     const auto [x, y, z, w] = clip(m, p);
     const double front = depth == ClipDepth::ZeroToOne ? z : w + z;
     return std::min({w + x, w - x, w + y, w - y, front, w - z});
 }
 
-TEST(Frustum, holds_the_points_that_the_matrix_shows) {
+TEST(Frustum, contains_the_points_inside_clip_space) {
     Random random(1);
     int inside = 0;
     for (int round = 0; round < 200; ++round) {
@@ -76,15 +76,15 @@ TEST(Frustum, holds_the_points_that_the_matrix_shows) {
         const Aabb around = bounds(*frustum);
         for (int i = 0; i < 500; ++i) {
             const Vec3 p = test::random_vector(random, 15);
-            const double right = depth_inside(camera, p, depth);
-            if (std::abs(right) < 1e-4) continue;
-            ASSERT_EQ(contains(*frustum, Aabb{p, p}), right > 0);
-            ASSERT_EQ(overlaps(*frustum, Aabb{p, p}), right > 0);
-            if (right < 0) continue;
+            const double expected = depth_inside(camera, p, depth);
+            if (std::abs(expected) < 1e-4) continue;
+            ASSERT_EQ(contains(*frustum, Aabb{p, p}), expected > 0);
+            ASSERT_EQ(overlaps(*frustum, Aabb{p, p}), expected > 0);
+            if (expected < 0) continue;
             ++inside;
             ASSERT_TRUE(contains(around, p));
             const Vec3 m{1, 2, 3};
-            ASSERT_TRUE(overlaps(*frustum, {p - m, p + m})) << "a box around a seen point is seen";
+            ASSERT_TRUE(overlaps(*frustum, {p - m, p + m})) << "a box around a visible point is visible";
         }
     }
     EXPECT_GT(inside, 1000);
@@ -94,21 +94,21 @@ TEST(Frustum, contains_a_box_when_all_its_corners_are_inside) {
     Random random(2);
     const Matrix camera = perspective(1, 1, 1, 100);
     const Frustum frustum = *frustum_of(camera);
-    int whole = 0;
+    int contained = 0;
     for (int round = 0; round < 20000; ++round) {
         const Vec3 c = test::random_vector(random, 30), half = abs(test::random_vector(random, 4));
         const Aabb box{c - half, c + half};
-        double least = 1e9;
+        double min_depth = 1e9;
         for (int i = 0; i < 8; ++i) {
             const Vec3 corner{i & 1 ? box.lo.x : box.hi.x, i & 2 ? box.lo.y : box.hi.y, i & 4 ? box.lo.z : box.hi.z};
-            least = std::min(least, depth_inside(camera, corner, ClipDepth::MinusOneToOne));
+            min_depth = std::min(min_depth, depth_inside(camera, corner, ClipDepth::MinusOneToOne));
         }
-        if (std::abs(least) < 1e-4) continue;
-        ASSERT_EQ(contains(frustum, box), least > 0);
-        ASSERT_TRUE(overlaps(frustum, box) || least < 0);
-        whole += least > 0 ? 1 : 0;
+        if (std::abs(min_depth) < 1e-4) continue;
+        ASSERT_EQ(contains(frustum, box), min_depth > 0);
+        ASSERT_TRUE(overlaps(frustum, box) || min_depth < 0);
+        contained += min_depth > 0 ? 1 : 0;
     }
-    EXPECT_GT(whole, 1000);
+    EXPECT_GT(contained, 1000);
 }
 
 TEST(Frustum, of_the_identity_is_the_cube_from_minus_one_to_one) {
@@ -131,14 +131,14 @@ TEST(Frustum, of_the_identity_is_the_cube_from_minus_one_to_one) {
     EXPECT_FALSE(overlaps(half, {{-1, -1, -1}, {1, 1, -0.5f}}));
 }
 
-TEST(Frustum, of_a_matrix_that_shows_nothing_or_is_not_finite_is_refused) {
+TEST(Frustum, of_a_degenerate_or_not_finite_matrix_is_refused) {
     Matrix m = perspective(1, 1, 1, 100);
     m[7] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(frustum_of(m).status(), Status::BadArgument);
     EXPECT_EQ(frustum_of(Matrix{}).status(), Status::BadArgument);
 }
 
-TEST(Frustum, without_a_far_plane_is_bounded_by_everything) {
+TEST(Frustum, without_a_far_plane_has_infinite_bounds) {
     EXPECT_EQ(bounds(*frustum_of(perspective(1, 1, 1, 0))), Aabb::everything());
 }
 

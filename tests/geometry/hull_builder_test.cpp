@@ -1,4 +1,4 @@
-/// Convex hulls: against theory, against qhull, and of points that make none.
+/// Convex hulls: known solids, comparison with qhull, and degenerate input.
 #include "fase/geometry/hull_builder.hpp"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ double farthest_outside(const ConvexHull& hull, std::span<const Vec3> points) {
     return farthest;
 }
 
-/// Every vertex is one of the points, all faces turn left all the way round, and check() finds nothing wrong.
-void expect_sound(const ConvexHull& hull, std::span<const Vec3> points) {
+/// Checks that every vertex is one of the points, all faces are convex and flat, and check() passes.
+void expect_valid(const ConvexHull& hull, std::span<const Vec3> points) {
     const Result<void> fit = check(Shape(hull));
     ASSERT_TRUE(fit) << fit.error().text();
     if (points.size() <= 20000) {
@@ -79,7 +79,7 @@ TEST(ConvexHull, of_a_cube_has_8_vertices_12_edges_and_6_square_faces) {
     const std::vector<Vec3> points = cube_corners();
     const Result<ConvexHull> hull = build_convex_hull(points);
     ASSERT_TRUE(hull) << hull.error().text();
-    expect_sound(*hull, points);
+    expect_valid(*hull, points);
     EXPECT_EQ(hull->vertices, points) << "vertices keep the order of the points";
     EXPECT_EQ(hull->edges.size(), 12u);
     ASSERT_EQ(hull->faces.size(), 6u);
@@ -95,7 +95,7 @@ TEST(ConvexHull, of_a_tetrahedron_lists_each_edge_with_its_two_faces) {
     const Vec3 points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const Result<ConvexHull> hull = build_convex_hull(points);
     ASSERT_TRUE(hull);
-    expect_sound(*hull, points);
+    expect_valid(*hull, points);
     ASSERT_EQ(hull->edges.size(), 6u);
     for (std::size_t e = 0; e < 6; ++e) {
         const ConvexHull::Edge& edge = hull->edges[e];
@@ -107,7 +107,7 @@ TEST(ConvexHull, of_a_tetrahedron_lists_each_edge_with_its_two_faces) {
     EXPECT_FLOAT_EQ(float(volume(*hull)), 1.0f / 6);
 }
 
-TEST(ConvexHull, leaves_out_points_inside_in_faces_and_in_edges) {
+TEST(ConvexHull, drops_points_inside_the_hull_its_faces_and_its_edges) {
     Random random(1);
     std::vector<Vec3> points;
     for (int i = 0; i < 3000; ++i) {
@@ -120,12 +120,12 @@ TEST(ConvexHull, leaves_out_points_inside_in_faces_and_in_edges) {
     for (const Vec3 corner : cube_corners()) points.push_back(corner);
     const Result<ConvexHull> hull = build_convex_hull(points);
     ASSERT_TRUE(hull);
-    expect_sound(*hull, points);
+    expect_valid(*hull, points);
     EXPECT_EQ(hull->vertices.size(), 8u);
     EXPECT_EQ(hull->faces.size(), 6u);
 }
 
-TEST(ConvexHull, of_a_turned_and_moved_lattice_still_has_6_faces) {
+TEST(ConvexHull, of_a_rotated_and_translated_lattice_has_6_faces) {
     Random random(2);
     for (int round = 0; round < 300; ++round) {
         const Quat turn = test::random_rotation(random);
@@ -137,14 +137,14 @@ TEST(ConvexHull, of_a_turned_and_moved_lattice_still_has_6_faces) {
         }
         const Result<ConvexHull> hull = build_convex_hull(points);
         ASSERT_TRUE(hull) << hull.error().text();
-        expect_sound(*hull, points);
+        expect_valid(*hull, points);
         ASSERT_EQ(hull->faces.size(), 6u) << "round " << round;
         ASSERT_EQ(hull->vertices.size(), 8u) << "round " << round;
         ASSERT_NEAR(volume(*hull), 125.0 * step.x * step.y * step.z, 2e-4);
     }
 }
 
-TEST(ConvexHull, of_prisms_has_two_round_faces_and_square_sides) {
+TEST(ConvexHull, of_prisms_has_two_polygonal_faces_and_quadrilateral_sides) {
     Random random(3);
     for (std::uint32_t corners = 3; corners <= 120; corners += 9) {
         const Quat turn = test::random_rotation(random);
@@ -155,14 +155,14 @@ TEST(ConvexHull, of_prisms_has_two_round_faces_and_square_sides) {
         }
         const Result<ConvexHull> hull = build_convex_hull(points);
         ASSERT_TRUE(hull) << hull.error().text();
-        expect_sound(*hull, points);
+        expect_valid(*hull, points);
         EXPECT_EQ(hull->vertices.size(), 2 * corners);
         EXPECT_EQ(hull->faces.size(), corners + 2);
         EXPECT_EQ(hull->edges.size(), 3 * corners);
     }
 }
 
-TEST(ConvexHull, gives_the_same_bits_every_time_and_for_the_points_of_its_own_vertices) {
+TEST(ConvexHull, gives_the_same_bits_again_and_for_its_own_vertices) {
     Random random(4);
     const std::vector<Vec3> points = test::random_points(random, 500);
     const Result<ConvexHull> once = build_convex_hull(points), again = build_convex_hull(points);
@@ -174,25 +174,25 @@ TEST(ConvexHull, gives_the_same_bits_every_time_and_for_the_points_of_its_own_ve
     EXPECT_EQ(of_itself->faces, once->faces);
 }
 
-TEST(ConvexHull, of_a_million_points_is_simplified_inward_to_its_most_vertices) {
+TEST(ConvexHull, of_a_million_points_is_simplified_inward_to_max_vertices) {
     Random random(5);
     std::vector<Vec3> points;
     for (int i = 0; i < 1000000; ++i) points.push_back(normalized(test::random_vector(random)));
     double last = 0;
-    for (const int most : {8, 255}) {
-        const Result<ConvexHull> hull = build_convex_hull(points, {most});
+    for (const int max_vertices : {8, 255}) {
+        const Result<ConvexHull> hull = build_convex_hull(points, {max_vertices});
         ASSERT_TRUE(hull) << hull.error().text();
-        expect_sound(*hull, points);
-        EXPECT_LE(hull->vertices.size(), static_cast<std::size_t>(most));
-        for (const Vec3 v : hull->vertices) ASSERT_NEAR(length(v), 1, 1e-6) << "a vertex that is none of the points";
-        EXPECT_GT(volume(*hull), last) << "more vertices follow the ball better";
+        expect_valid(*hull, points);
+        EXPECT_LE(hull->vertices.size(), static_cast<std::size_t>(max_vertices));
+        for (const Vec3 v : hull->vertices) ASSERT_NEAR(length(v), 1, 1e-6) << "a vertex that is not one of the points";
+        EXPECT_GT(volume(*hull), last) << "more vertices approximate the sphere better";
         last = volume(*hull);
     }
     EXPECT_GT(last, 4.0 / 3 * 3.14159265 * 0.97);
     EXPECT_LT(last, 4.0 / 3 * 3.14159265);
 }
 
-TEST(ConvexHull, of_few_vertices_keeps_the_corners_of_a_simple_body) {
+TEST(ConvexHull, limited_to_few_vertices_keeps_the_corners_of_a_box) {
     Random random(6);
     std::vector<Vec3> points = test::random_points(random, 5000, {0.99f, 0.99f, 0.99f});
     for (const Vec3 corner : cube_corners()) points.push_back(corner);
@@ -204,16 +204,16 @@ TEST(ConvexHull, of_few_vertices_keeps_the_corners_of_a_simple_body) {
 struct Refusal {
     const char* what;
     std::vector<Vec3> points;
-    const char* said;
+    const char* message;
 };
 
-TEST(ConvexHull, of_points_that_make_no_solid_is_refused_with_the_counts) {
+TEST(ConvexHull, of_points_without_volume_is_refused_with_the_counts) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = Aabb::infinity;
     Random random(7);
-    std::vector<Vec3> line, turned_plane, sliver;
+    std::vector<Vec3> line, rotated_plane, sliver;
     for (int i = 0; i < 100; ++i) {
         line.push_back(Vec3{1, 2, 3} * random.between(-1, 1));
-        turned_plane.push_back(
+        rotated_plane.push_back(
             rotate(Quat{0.1f, 0.7f, 0.1f, 0.7f}, {random.between(-1, 1), 0.5f, random.between(-1, 1)}));
         sliver.push_back({random.between(-1, 1), random.between(0, 5e-5f), random.between(-1, 1)});
     }
@@ -229,9 +229,9 @@ TEST(ConvexHull, of_points_that_make_no_solid_is_refused_with_the_counts) {
         {"a million of three", three, "1000000 points, 3 distinct"},
         {"a line", line, "on one line"},
         {"a plane", {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {0.5f, 0, 0.3f}}, "in one plane"},
-        {"a turned plane", turned_plane, "in one plane"},
+        {"a rotated plane", rotated_plane, "in one plane"},
         {"a sliver", sliver, "in one plane"},
-        {"a speck", {{0, 0, 0}, {1e-5f, 0, 0}, {0, 1e-5f, 0}, {0, 0, 1e-5f}}, "at one place"},
+        {"a speck", {{0, 0, 0}, {1e-5f, 0, 0}, {0, 1e-5f, 0}, {0, 0, 1e-5f}}, "at one point"},
         {"NaN", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, nan, 1}}, "point 3 of 4"},
         {"infinity", {{0, 0, 0}, {-inf, 0, 0}, {0, 1, 0}, {0, 0, 1}}, "point 1 of 4"},
         {"far away", {{0, 0, 0}, {1, 0, 0}, {0, 1.1e5f, 0}, {0, 0, 1}}, "point 2 of 4"},
@@ -240,13 +240,13 @@ TEST(ConvexHull, of_points_that_make_no_solid_is_refused_with_the_counts) {
         const Result<ConvexHull> hull = build_convex_hull(refusal.points);
         ASSERT_FALSE(hull) << refusal.what;
         EXPECT_EQ(hull.status(), Status::BadArgument) << refusal.what;
-        EXPECT_NE(hull.error().text().find(refusal.said), std::string::npos)
+        EXPECT_NE(hull.error().text().find(refusal.message), std::string::npos)
             << refusal.what << ": " << hull.error().text();
     }
     EXPECT_EQ(build_convex_hull(cube_corners(), {3}).status(), Status::BadArgument);
 }
 
-TEST(ConvexHull, survives_noise_of_every_size_on_flat_and_round_bodies) {
+TEST(ConvexHull, is_valid_with_noise_of_any_size_on_flat_and_round_bodies) {
     Random random(8);
     for (int round = 0; round < 3000; ++round) {
         const float noise = std::pow(10.0f, random.between(-9, -1));
@@ -266,7 +266,7 @@ TEST(ConvexHull, survives_noise_of_every_size_on_flat_and_round_bodies) {
                 << hull.error().text();
             continue;
         }
-        expect_sound(*hull, points);
+        expect_valid(*hull, points);
         Vec3 largest;
         for (const Vec3 p : points) largest = max(largest, abs(p));
         const double sum = double(largest.x) + largest.y + largest.z;
@@ -276,16 +276,17 @@ TEST(ConvexHull, survives_noise_of_every_size_on_flat_and_round_bodies) {
 
 #ifdef FASE_HAS_QHULL
 
-struct Judge {
+/// The result of qhull, as the reference.
+struct Reference {
     double volume = 0, area = 0;
 };
-Judge judge(std::span<const Vec3> points) {
+Reference run_qhull(std::span<const Vec3> points) {
     std::vector<double> coordinates;
     for (const Vec3 p : points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
     qhT memory;
     qh_zero(&memory, stderr);
     char command[] = "qhull Qt";
-    Judge found;
+    Reference found;
     if (qh_new_qhull(&memory, 3, static_cast<int>(points.size()), coordinates.data(), 0, command, nullptr, stderr) ==
         0) {
         qh_getarea(&memory, memory.facet_list);
@@ -311,8 +312,8 @@ TEST(ConvexHull, has_the_volume_and_area_that_qhull_finds_and_leaves_no_point_ou
         }
         const Result<ConvexHull> hull = build_convex_hull(points, {1 << 20});
         if (!hull) continue;
-        expect_sound(*hull, points);
-        const Judge truth = judge(points);
+        expect_valid(*hull, points);
+        const Reference truth = run_qhull(points);
         const double largest = double(size.x) + size.y + size.z;
         ASSERT_LE(farthest_outside(*hull, points), 2e-6 * largest);
         ASSERT_NEAR(volume(*hull), truth.volume, 2e-6 * largest * truth.area + 1e-6 * truth.volume)

@@ -1,4 +1,4 @@
-/// Mass, centre and inertia: against theory, against counting points, and under motion.
+/// Mass, centre and inertia: known formulas, Monte Carlo integration, and invariance under rigid transforms.
 #include "fase/geometry/mass.hpp"
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ void expect_near(const Mat3& a, const Mat3& b, float tolerance) {
 }
 float trace(const Mat3& m) { return m.x.x + m.y.y + m.z.z; }
 
-TEST(MassProperties, of_every_shape_are_those_of_the_textbook) {
-    const MassProperties ball = mass_properties(Sphere{2}, 3);
-    EXPECT_FLOAT_EQ(ball.mass, float(3 * 4.0 / 3 * pi * 8));
-    EXPECT_FLOAT_EQ(ball.inertia.x.x, 0.4f * ball.mass * 4);
+TEST(MassProperties, of_every_shape_match_the_formulas) {
+    const MassProperties sphere = mass_properties(Sphere{2}, 3);
+    EXPECT_FLOAT_EQ(sphere.mass, float(3 * 4.0 / 3 * pi * 8));
+    EXPECT_FLOAT_EQ(sphere.inertia.x.x, 0.4f * sphere.mass * 4);
 
     const MassProperties box = mass_properties(Box{{1, 2, 3}}, 10);
     EXPECT_FLOAT_EQ(box.mass, 480);
@@ -42,14 +42,14 @@ TEST(MassProperties, of_every_shape_are_those_of_the_textbook) {
     EXPECT_EQ(mass_properties(HalfSpace{}, 1).mass, 0);
 }
 
-TEST(MassProperties, of_a_capsule_without_barrel_are_those_of_a_ball) {
-    const MassProperties capsule = mass_properties(Capsule{0.7f, 0}, 5), ball = mass_properties(Sphere{0.7f}, 5);
-    EXPECT_FLOAT_EQ(capsule.mass, ball.mass);
-    expect_near(capsule.inertia, ball.inertia, 1e-6f * trace(ball.inertia));
+TEST(MassProperties, of_a_capsule_of_length_0_equal_those_of_a_sphere) {
+    const MassProperties capsule = mass_properties(Capsule{0.7f, 0}, 5), sphere = mass_properties(Sphere{0.7f}, 5);
+    EXPECT_FLOAT_EQ(capsule.mass, sphere.mass);
+    expect_near(capsule.inertia, sphere.inertia, 1e-6f * trace(sphere.inertia));
 }
 
-/// Twice as fine, four times as near: the hull of a tessellation against the formula.
-TEST(MassProperties, of_round_shapes_are_those_of_a_hull_with_very_many_sides) {
+/// Compares the formula with the hull of a fine tessellation.
+TEST(MassProperties, of_round_shapes_match_those_of_a_finely_tessellated_hull) {
     Random random(1);
     for (int round = 0; round < 4; ++round) {
         for (const Shape& shape :
@@ -66,19 +66,19 @@ TEST(MassProperties, of_round_shapes_are_those_of_a_hull_with_very_many_sides) {
     }
 }
 
-/// An independent judge for all shapes alike: points thrown at the box, those inside counted.
-TEST(MassProperties, of_every_shape_are_those_of_many_points_inside_it) {
+/// An independent reference for all shapes: Monte Carlo integration over the bounding box.
+TEST(MassProperties, of_every_shape_match_monte_carlo_integration) {
     Random random(2);
     for (const Shape& shape :
          {Shape(Sphere{0.8f}), Shape(Box{{0.3f, 0.7f, 0.5f}}), Shape(Capsule{0.4f, 0.6f}), Shape(Cylinder{0.5f, 0.4f}),
           Shape(*build_convex_hull(test::random_points(random, 30)))}) {
         const Aabb box = bounds(shape, {});
         const Vec3 size = extent(box);
-        constexpr int thrown = 400000;
+        constexpr int samples = 400000;
         double inside = 0;
         Vec3d sum;
         Mat3d squares;
-        for (int i = 0; i < thrown; ++i) {
+        for (int i = 0; i < samples; ++i) {
             const Vec3 p = box.lo + multiply(size, {random.unit(), random.unit(), random.unit()});
             if (!test::is_inside(shape, p)) continue;
             const Vec3d d = to_double(p);
@@ -87,39 +87,39 @@ TEST(MassProperties, of_every_shape_are_those_of_many_points_inside_it) {
             squares = squares + Mat3d{d * d.x, d * d.y, d * d.z};
         }
         const MassProperties found = mass_properties(shape, 7);
-        const double share = 7.0 * size.x * size.y * size.z / thrown;
-        EXPECT_NEAR(found.mass / (inside * share), 1, 0.01) << name_of(shape);
+        const double sample_mass = 7.0 * size.x * size.y * size.z / samples;
+        EXPECT_NEAR(found.mass / (inside * sample_mass), 1, 0.01) << name_of(shape);
         const Vec3d centre = sum * (1 / inside);
         EXPECT_LT(length(to_float(centre) - found.centre), 0.004f) << name_of(shape);
-        const Mat3d second =
-            squares * share - Mat3d{centre * centre.x, centre * centre.y, centre * centre.z} * (inside * share);
+        const Mat3d second = squares * sample_mass -
+                             Mat3d{centre * centre.x, centre * centre.y, centre * centre.z} * (inside * sample_mass);
         const double t = second.x.x + second.y.y + second.z.z;
         expect_near(to_float(Mat3d::diagonal({t, t, t}) - second), found.inertia, 0.01f * trace(found.inertia));
     }
 }
 
-TEST(MassProperties, of_a_box_made_a_hull_far_from_its_origin_are_still_those_of_the_box) {
+TEST(MassProperties, of_a_box_hull_far_from_its_origin_equal_those_of_the_box) {
     const Box box{{0.5f, 1, 0.25f}};
     std::vector<Vec3> points = sample_points(box);
     for (Vec3& p : points) p += Vec3{1000, -2000, 3000};
-    const MassProperties found = mass_properties(*build_convex_hull(points), 10), right = mass_properties(box, 10);
-    EXPECT_FLOAT_EQ(found.mass, right.mass);
+    const MassProperties found = mass_properties(*build_convex_hull(points), 10), expected = mass_properties(box, 10);
+    EXPECT_FLOAT_EQ(found.mass, expected.mass);
     EXPECT_EQ(found.centre, (Vec3{1000, -2000, 3000}));
-    expect_near(found.inertia, right.inertia, 1e-5f * trace(right.inertia));
+    expect_near(found.inertia, expected.inertia, 1e-5f * trace(expected.inertia));
 }
 
-TEST(MassProperties, do_not_depend_on_the_order_of_moving_and_measuring) {
+TEST(MassProperties, of_a_transformed_hull_equal_the_transformed_properties) {
     Random random(3);
     for (int round = 0; round < 100; ++round) {
         const std::vector<Vec3> points = test::random_points(random, 20);
-        const LocalPose placed{test::random_vector(random, 2), test::random_rotation(random)};
+        const LocalPose pose{test::random_vector(random, 2), test::random_rotation(random)};
         std::vector<Vec3> there = points;
-        for (Vec3& p : there) p = transform(placed, p);
-        const MassProperties moved_after = moved(mass_properties(*build_convex_hull(points), 3), placed);
-        const MassProperties moved_before = mass_properties(*build_convex_hull(there), 3);
-        ASSERT_NEAR(moved_after.mass, moved_before.mass, 1e-4f);
-        ASSERT_LT(length(moved_after.centre - moved_before.centre), 1e-5f);
-        expect_near(moved_after.inertia, moved_before.inertia, 1e-4f);
+        for (Vec3& p : there) p = transform(pose, p);
+        const MassProperties after = transformed(mass_properties(*build_convex_hull(points), 3), pose);
+        const MassProperties before = mass_properties(*build_convex_hull(there), 3);
+        ASSERT_NEAR(after.mass, before.mass, 1e-4f);
+        ASSERT_LT(length(after.centre - before.centre), 1e-5f);
+        expect_near(after.inertia, before.inertia, 1e-4f);
     }
 }
 
@@ -128,22 +128,22 @@ TEST(CombinedMass, of_a_box_cut_in_eight_is_the_box) {
     std::vector<MassProperties> parts;
     for (int i = 0; i < 8; ++i) {
         const Vec3 side{i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f};
-        parts.push_back(moved(eighth, {multiply({0.5f, 1, 1.5f}, side) + Vec3{9, 8, 7}, {}}));
+        parts.push_back(transformed(eighth, {multiply({0.5f, 1, 1.5f}, side) + Vec3{9, 8, 7}, {}}));
     }
-    const MassProperties whole = combined(parts), right = mass_properties(Box{{1, 2, 3}}, 4);
-    EXPECT_FLOAT_EQ(whole.mass, right.mass);
-    EXPECT_EQ(whole.centre, (Vec3{9, 8, 7}));
-    expect_near(whole.inertia, right.inertia, 1e-5f * trace(right.inertia));
+    const MassProperties found = combined(parts), expected = mass_properties(Box{{1, 2, 3}}, 4);
+    EXPECT_FLOAT_EQ(found.mass, expected.mass);
+    EXPECT_EQ(found.centre, (Vec3{9, 8, 7}));
+    expect_near(found.inertia, expected.inertia, 1e-5f * trace(expected.inertia));
 }
 
-TEST(CombinedMass, of_nothing_or_of_weightless_parts_is_zero) {
+TEST(CombinedMass, of_no_parts_or_massless_parts_is_zero) {
     EXPECT_EQ(combined({}).mass, 0);
     const MassProperties ground[] = {mass_properties(HalfSpace{}, 1)};
     EXPECT_EQ(combined(ground).mass, 0);
     EXPECT_EQ(combined(ground).inertia, Mat3{});
 }
 
-TEST(PrincipalInertia, of_a_diagonal_matrix_is_exactly_it_without_a_turn) {
+TEST(PrincipalInertia, of_a_diagonal_matrix_is_exactly_its_diagonal_without_a_rotation) {
     for (const Vec3 d : {Vec3{1, 2, 3}, Vec3{3, 2, 1}, Vec3{2, 2, 2}, Vec3{1e-20f, 1e20f, 1}, Vec3{5, 5, 1}}) {
         const PrincipalInertia found = principal(Mat3::diagonal(d));
         EXPECT_EQ(found.moments, d);
@@ -151,7 +151,7 @@ TEST(PrincipalInertia, of_a_diagonal_matrix_is_exactly_it_without_a_turn) {
     }
 }
 
-TEST(PrincipalInertia, turned_back_gives_the_matrix_it_came_from) {
+TEST(PrincipalInertia, reproduces_the_matrix) {
     Random random(4);
     for (int round = 0; round < 2000; ++round) {
         Vec3 moments{test::random_size(random), test::random_size(random), test::random_size(random)};
@@ -166,9 +166,9 @@ TEST(PrincipalInertia, turned_back_gives_the_matrix_it_came_from) {
     }
 }
 
-/// No other naming of the axes turns less: each axis lies within 90° of its own world axis, and the turn is at most 63°
-/// (the farthest a rotation can be from the 24 of a cube).
-TEST(PrincipalInertia, turns_as_little_as_possible) {
+/// No other permutation of the axes has a smaller rotation: each axis is within 90° of its world axis, and the angle is
+/// at most 63° (the largest distance of a rotation from the 24 rotations of a cube).
+TEST(PrincipalInertia, has_the_smallest_possible_rotation) {
     Random random(5);
     for (int round = 0; round < 2000; ++round) {
         const Mat3 r = to_matrix(test::random_rotation(random));
@@ -177,7 +177,7 @@ TEST(PrincipalInertia, turns_as_little_as_possible) {
     }
 }
 
-TEST(PrincipalInertia, of_NaN_and_infinity_ends) {
+TEST(PrincipalInertia, of_NaN_and_infinity_terminates) {
     const float nan = std::nanf("");
     (void)principal(Mat3::diagonal({nan, 1, 2}));
     (void)principal({{1, nan, 0}, {nan, 1, 0}, {0, 0, 1}});
@@ -199,7 +199,7 @@ TEST(MassCheck, passes_the_properties_of_every_solid) {
     }
 }
 
-TEST(MassCheck, names_what_is_wrong) {
+TEST(MassCheck, names_the_fault) {
     const float nan = std::nanf(""), inf = Aabb::infinity;
     const MassProperties good{1, {}, Mat3::diagonal({1, 2, 3})};
     EXPECT_EQ(complaint(good), "") << "the flat limit of the triangle rule is allowed";

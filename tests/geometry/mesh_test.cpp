@@ -1,4 +1,4 @@
-/// Meshes of shapes: closed, turned outward, on the surface, of the right volume.
+/// Meshes of shapes: closed, facing outward, on the surface, of the right volume.
 #include "fase/geometry/mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ double volume(const TriangleMesh& mesh) {
     return six / 6;
 }
 
-TEST(TriangleMesh, of_every_solid_is_closed_and_turned_outward) {
+TEST(TriangleMesh, of_every_solid_is_closed_and_faces_outward) {
     Random random(1);
     for (int round = 0; round < 50; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
@@ -36,7 +36,7 @@ TEST(TriangleMesh, of_every_solid_is_closed_and_turned_outward) {
                 ++edges[{from, to}];
             }
             for (const auto& [edge, count] : edges) {
-                ASSERT_EQ(count, 1) << name_of(shape) << ": an edge walked twice the same way";
+                ASSERT_EQ(count, 1) << name_of(shape) << ": an edge twice in the same direction";
                 ASSERT_TRUE(edges.contains({edge.second, edge.first})) << name_of(shape) << ": an open edge";
             }
             ASSERT_EQ(mesh.positions.size() + mesh.indices.size() / 3, edges.size() / 2 + 2) << name_of(shape);
@@ -45,38 +45,38 @@ TEST(TriangleMesh, of_every_solid_is_closed_and_turned_outward) {
     }
 }
 
-TEST(TriangleMesh, of_every_solid_fills_it_but_for_the_stated_share) {
+TEST(TriangleMesh, of_every_solid_has_its_volume_within_the_stated_tolerance) {
     Random random(2);
     for (int round = 0; round < 50; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
             if (std::holds_alternative<HalfSpace>(shape)) continue;
-            const double right = mass_properties(shape, 1).mass;
+            const double expected = mass_properties(shape, 1).mass;
             const double found = volume(triangles(shape, 64));
-            ASSERT_LE(found, right * (1 + 1e-5)) << name_of(shape);
-            ASSERT_GE(found, right * (1 - 0.006)) << name_of(shape);
+            ASSERT_LE(found, expected * (1 + 1e-5)) << name_of(shape);
+            ASSERT_GE(found, expected * (1 - 0.006)) << name_of(shape);
             if (std::holds_alternative<Box>(shape) || std::holds_alternative<ConvexHull>(shape)) {
-                ASSERT_NEAR(found / right, 1, 1e-4) << name_of(shape);
+                ASSERT_NEAR(found / expected, 1, 1e-4) << name_of(shape);
             }
         }
     }
 }
 
-TEST(TriangleMesh, has_its_points_on_the_surface_and_its_middles_near_it) {
+TEST(TriangleMesh, has_its_vertices_on_the_surface_and_its_triangles_near_it) {
     const float radius = 2;
     for (const int detail : {8, 20, 32}) {
         const TriangleMesh mesh = triangles(Sphere{radius}, detail);
-        const double share = std::sin(3.14159265 / detail) * std::sin(3.14159265 / detail);
+        const double relative_error = std::sin(3.14159265 / detail) * std::sin(3.14159265 / detail);
         for (const Vec3 p : mesh.positions) ASSERT_NEAR(length(p), radius, 1e-6);
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
             const Vec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
                        c = mesh.positions[mesh.indices[i + 2]];
             const Vec3 n = normalized(cross(b - a, c - a));
-            ASSERT_GE(dot(n, a), radius * (1 - share) - 1e-5f) << "detail " << detail;
+            ASSERT_GE(dot(n, a), radius * (1 - relative_error) - 1e-5f) << "detail " << detail;
         }
     }
 }
 
-TEST(TriangleMesh, of_a_half_space_is_a_square_that_looks_up) {
+TEST(TriangleMesh, of_a_half_space_is_a_square_that_faces_up) {
     const TriangleMesh mesh = triangles(HalfSpace{});
     ASSERT_EQ(mesh.positions.size(), 4u);
     ASSERT_EQ(mesh.indices.size(), 6u);

@@ -1,4 +1,4 @@
-/// Rays against boxes, above all those along an axis and on a face.
+/// Rays against boxes, especially rays along an axis and in a face.
 #include "fase/geometry/ray.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,9 @@ constexpr float miss = RayBoxTest::miss;
 constexpr float inf = Aabb::infinity;
 const Aabb unit{{-1, -1, -1}, {1, 1, 1}};
 
-float entry(const Ray& ray, const Aabb& box, float farthest = miss) { return RayBoxTest(ray).entry(box, farthest); }
+float entry(const Ray& ray, const Aabb& box, float max_distance = miss) {
+    return RayBoxTest(ray).entry(box, max_distance);
+}
 
 TEST(Ray, along_each_axis_enters_the_box_at_its_face) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -32,11 +34,11 @@ TEST(Ray, along_each_axis_enters_the_box_at_its_face) {
 TEST(Ray, that_starts_inside_enters_at_0) {
     EXPECT_EQ(entry({{0, 0, 0}, {0, 0, 1}, 5}, unit), 0);
     EXPECT_EQ(entry({{1, 1, 1}, {0, 0, 1}, 5}, unit), 0) << "a corner is inside";
-    EXPECT_EQ(entry({{0.5, 0, 0}, {1, 0, 0}, 0}, unit), 0) << "a ray of length 0 asks about its point";
+    EXPECT_EQ(entry({{0.5, 0, 0}, {1, 0, 0}, 0}, unit), 0) << "a ray of length 0 tests its point";
     EXPECT_EQ(entry({{1.5, 0, 0}, {1, 0, 0}, 0}, unit), miss);
 }
 
-TEST(Ray, within_a_face_or_along_an_edge_meets_the_box) {
+TEST(Ray, in_a_face_or_along_an_edge_meets_the_box) {
     for (const float zero : {0.f, -0.f}) {
         EXPECT_NEAR(entry({{-5, 1, 0}, {1, zero, zero}, 10}, unit), 4, 1e-5);
         EXPECT_NEAR(entry({{-5, -1, 0}, {1, zero, zero}, 10}, unit), 4, 1e-5);
@@ -46,7 +48,7 @@ TEST(Ray, within_a_face_or_along_an_edge_meets_the_box) {
     }
 }
 
-TEST(Ray, meets_flat_point_and_infinite_boxes_but_no_empty_one) {
+TEST(Ray, meets_flat_point_and_infinite_boxes_but_no_empty_box) {
     EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}, 10}, {{-1, 0, -1}, {1, 0, 1}}), 5, 1e-5);
     EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}, 10}, {{0, 2, 0}, {0, 2, 0}}), 3, 1e-5);
     EXPECT_EQ(entry({{0, 5, 0}, {0, -1, 0}, 10}, Aabb::everything()), 0);
@@ -56,16 +58,16 @@ TEST(Ray, meets_flat_point_and_infinite_boxes_but_no_empty_one) {
     EXPECT_EQ(entry({{0, 0, 0}, {0.6f, -0.8f, 0}}, Aabb{}), miss);
 }
 
-TEST(Ray, stops_at_its_length_and_at_the_farthest_asked_for) {
+TEST(Ray, stops_at_its_length_and_at_the_maximum_distance) {
     const Ray ray{{-5, 0, 0}, {1, 0, 0}, 4};
-    EXPECT_NEAR(entry(ray, unit), 4, 1e-5) << "touched with its end";
+    EXPECT_NEAR(entry(ray, unit), 4, 1e-5) << "touches with its end";
     EXPECT_EQ(entry({{-5, 0, 0}, {1, 0, 0}, 3.999f}, unit), miss);
     EXPECT_EQ(entry(ray, unit, 3.999f), miss);
     EXPECT_EQ(point_at(ray, 4), (Vec3d{-1, 0, 0}));
 }
 
-/// Judge: the ray in long double, cut by the six planes.
-bool truly_meets(const Ray& ray, const Aabb& box) {
+/// The reference: the slab test in long double.
+bool reference_meets(const Ray& ray, const Aabb& box) {
     long double near = 0, far = ray.length;
     for (int axis = 0; axis < 3; ++axis) {
         const long double o = ray.origin[axis], d = ray.direction[axis];
@@ -80,14 +82,14 @@ bool truly_meets(const Ray& ray, const Aabb& box) {
     return near <= far;
 }
 
-TEST(Ray, never_misses_what_the_exact_ray_meets_and_hardly_ever_meets_more) {
+TEST(Ray, never_misses_a_box_of_the_reference_and_rarely_reports_more) {
     Random random(1);
     int extra = 0, met = 0;
     for (int round = 0; round < 400000; ++round) {
         Ray ray{to_double(test::random_vector(random, 3)), normalized(test::random_vector(random)),
                 random.between(0, 8)};
         Vec3 a = test::random_vector(random, 2), b = test::random_vector(random, 2);
-        if (round % 2 == 0) {  // everything on a coarse lattice: faces, edges and corners are hit exactly
+        if (round % 2 == 0) {  // all on a coarse lattice: faces, edges and corners are hit exactly
             const auto snap = [](double v) { return std::round(v * 2) / 2; };
             ray.origin = {snap(ray.origin.x), snap(ray.origin.y), snap(ray.origin.z)};
             a = {float(snap(a.x)), float(snap(a.y)), float(snap(a.z))};
@@ -97,10 +99,10 @@ TEST(Ray, never_misses_what_the_exact_ray_meets_and_hardly_ever_meets_more) {
             if (length(lattice) > 0) ray.direction = normalized(lattice);
         }
         const Aabb box{min(a, b), max(a, b)};
-        const bool right = truly_meets(ray, box), found = RayBoxTest(ray).meets(box);
-        ASSERT_TRUE(found || !right) << "round " << round;
-        met += right ? 1 : 0;
-        extra += found && !right ? 1 : 0;
+        const bool expected = reference_meets(ray, box), found = RayBoxTest(ray).meets(box);
+        ASSERT_TRUE(found || !expected) << "round " << round;
+        met += expected ? 1 : 0;
+        extra += found && !expected ? 1 : 0;
     }
     EXPECT_GT(met, 20000);
     EXPECT_LT(extra, 40);

@@ -13,7 +13,7 @@
 namespace fase {
 namespace {
 
-/// How far the shape reaches along `direction`.
+/// The support value of the shape along `direction`.
 float reach(const Shape& shape, Vec3 direction) {
     return std::visit(
         [&](const auto& s) -> float {
@@ -26,19 +26,19 @@ float reach(const Shape& shape, Vec3 direction) {
         shape);
 }
 
-/// The image's reach along a direction must be the shape's along the transposed map's image of it.
-void expect_image(const TurnedShape& image, const Shape& shape, const Mat3& map, float share) {
+/// The image's support value along a direction must be the shape's along the direction mapped by the transposed matrix.
+void expect_image(const RotatedShape& image, const Shape& shape, const Mat3& map, float relative_tolerance) {
     Random random(99);
     float largest = 0;
     for (const Vec3 axis : {map.x, map.y, map.z}) largest = std::max(largest, length(axis));
-    const float tolerance = share * largest * outer_radius(shape);
+    const float tolerance = relative_tolerance * largest * outer_radius(shape);
     for (int i = 0; i < 100; ++i) {
         const Vec3 direction = normalized(test::random_vector(random));
-        const float right = reach(shape, transpose_times(map, direction));
+        const float expected = reach(shape, transpose_times(map, direction));
         const float found = reach(image.shape, rotate_back(image.rotation, direction));
-        ASSERT_LE(found, right + std::min(tolerance, 2e-4f * largest * outer_radius(shape)))
+        ASSERT_LE(found, expected + std::min(tolerance, 2e-4f * largest * outer_radius(shape)))
             << name_of(shape) << " as " << name_of(image.shape);
-        ASSERT_GE(found, right - tolerance) << name_of(shape) << " as " << name_of(image.shape);
+        ASSERT_GE(found, expected - tolerance) << name_of(shape) << " as " << name_of(image.shape);
     }
 }
 
@@ -47,7 +47,7 @@ template <class S> S as(const Result<Shape>& shape) {
     return shape && std::holds_alternative<S>(*shape) ? std::get<S>(*shape) : S{};
 }
 
-TEST(Scaled, shapes_keep_their_kind_where_they_can) {
+TEST(Scaled, shapes_keep_their_kind_where_possible) {
     EXPECT_EQ(as<Sphere>(scaled(Sphere{2}, {3, 3, 3})), Sphere{6});
     EXPECT_EQ(as<Sphere>(scaled(Sphere{2}, {3, -3, 3})), Sphere{6});
     EXPECT_EQ(as<Box>(scaled(Box{{1, 2, 3}}, {2, -3, 4})), (Box{{2, 6, 12}}));
@@ -57,7 +57,7 @@ TEST(Scaled, shapes_keep_their_kind_where_they_can) {
     EXPECT_NEAR(as<Sphere>(scaled(Sphere{1}, {1, 1.00005f, 1})).radius, 1, 1e-4);
 }
 
-TEST(Scaled, shapes_that_cannot_stay_become_hulls_inside_the_truth_and_near_it) {
+TEST(Scaled, other_shapes_become_hulls_inside_the_true_shape_and_near_it) {
     for (const auto& [shape, scale] : {std::pair{Shape(Sphere{2}), Vec3{1, 2, 3}},
                                        {Shape(Capsule{1, 2}), Vec3{1, 3, 1}},
                                        {Shape(Cylinder{1, 2}), Vec3{1, 1, -4}},
@@ -88,7 +88,7 @@ TEST(Scaled, a_mirrored_hull_is_the_mirror_image) {
     }
 }
 
-TEST(Scaled, what_leaves_no_solid_or_no_size_in_range_is_refused) {
+TEST(Scaled, scales_without_volume_or_with_sizes_out_of_range_are_refused) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for (const Vec3 scale :
          {Vec3{0, 1, 1}, Vec3{1, 0, 1}, Vec3{1, 1, nan}, Vec3{1, Aabb::infinity, 1}, Vec3{0, 0, 0}}) {
@@ -101,7 +101,7 @@ TEST(Scaled, what_leaves_no_solid_or_no_size_in_range_is_refused) {
     EXPECT_EQ(transformed(Box{}, {{1, 0, 0}, {1, 0, 0}, {0, 0, 1}}).status(), Status::BadArgument);
 }
 
-TEST(Transformed, shapes_under_any_map_reach_as_far_as_the_true_image) {
+TEST(Transformed, shapes_have_the_extents_of_the_true_image_for_any_map) {
     Random random(2);
     for (int round = 0; round < 200; ++round) {
         const Mat3 turn = to_matrix(test::random_rotation(random)), other = to_matrix(test::random_rotation(random));
@@ -114,7 +114,7 @@ TEST(Transformed, shapes_under_any_map_reach_as_far_as_the_true_image) {
              {Shape(Sphere{0.5f}), Shape(Box{{1, 2, 0.5f}}), Shape(Capsule{0.5f, 1}), Shape(Cylinder{1, 0.5f}),
               Shape(*build_convex_hull(test::random_points(random, 12)))}) {
             for (const Mat3& map : maps) {
-                const Result<TurnedShape> image = transformed(shape, map);
+                const Result<RotatedShape> image = transformed(shape, map);
                 ASSERT_TRUE(image) << image.error().text();
                 const bool same_kind = image->shape.index() == shape.index();
                 expect_image(*image, shape, map, same_kind ? 3e-6f : 0.025f);
@@ -130,7 +130,7 @@ TEST(Transformed, a_half_space_keeps_the_image_of_its_plane) {
     for (int round = 0; round < 200; ++round) {
         Mat3 map{test::random_vector(random), test::random_vector(random), test::random_vector(random)};
         if (std::abs(determinant(map)) < 0.05f) continue;
-        const Result<TurnedShape> image = transformed(HalfSpace{}, map);
+        const Result<RotatedShape> image = transformed(HalfSpace{}, map);
         ASSERT_TRUE(image);
         ASSERT_NEAR(length_squared(image->rotation), 1, 1e-5);
         const Vec3 up = rotate(image->rotation, {0, 1, 0});
@@ -143,7 +143,7 @@ TEST(Transformed, a_half_space_keeps_the_image_of_its_plane) {
 TEST(Transformed, the_identity_changes_nothing) {
     Random random(4);
     for (const Shape& shape : test::one_of_each(random)) {
-        const Result<TurnedShape> image = transformed(shape, Mat3::identity());
+        const Result<RotatedShape> image = transformed(shape, Mat3::identity());
         ASSERT_TRUE(image) << image.error().text();
         EXPECT_EQ(image->rotation, Quat{}) << name_of(shape);
         if (const auto* hull = std::get_if<ConvexHull>(&shape)) {

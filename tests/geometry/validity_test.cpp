@@ -1,4 +1,4 @@
-/// check(Shape): what passes, what is refused and in which words.
+/// check(Shape): valid shapes, refused shapes and their error messages.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -35,38 +35,38 @@ TEST(ShapeCheck, names_the_size_that_is_out_of_range) {
         if (bad == 0) continue;
         EXPECT_NE(complaint(Capsule{1, bad}).find("capsule.half_length"), std::string::npos) << bad;
     }
-    EXPECT_EQ(complaint(Capsule{1, 0}), "") << "a capsule may be a ball";
+    EXPECT_EQ(complaint(Capsule{1, 0}), "") << "a capsule may be a sphere";
     EXPECT_EQ(complaint(Sphere{1e-4f}), "");
     EXPECT_EQ(complaint(Sphere{1e5f}), "");
-    EXPECT_EQ(complaint(Sphere{-2}), "sphere.radius: found -2, need a length from 1e-4 to 1e5 m");
+    EXPECT_EQ(complaint(Sphere{-2}), "sphere.radius: found -2; expected a length from 1e-4 to 1e5 m");
 }
 
-TEST(ShapeCheck, refuses_hulls_that_were_tampered_with) {
+TEST(ShapeCheck, refuses_corrupted_hulls) {
     Random random(2);
     const ConvexHull good = *build_convex_hull(test::random_points(random, 30));
-    const auto spoilt = [&](const std::function<void(ConvexHull&)>& spoil) {
+    const auto corrupted = [&](const std::function<void(ConvexHull&)>& change) {
         ConvexHull hull = good;
-        spoil(hull);
+        change(hull);
         return complaint(hull);
     };
-    EXPECT_EQ(spoilt([](ConvexHull&) {}), "");
+    EXPECT_EQ(corrupted([](ConvexHull&) {}), "");
     EXPECT_NE(complaint(ConvexHull{}), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.vertices.resize(3); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.vertices.pop_back(); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.vertices[0] = h.vertices[0] * 3; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.vertices[0].y = std::numeric_limits<float>::quiet_NaN(); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.vertices[1].x = 2e5f; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.faces.pop_back(); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.faces[1].first = 0; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.faces[1].count = 0xffffffff; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.faces[1].plane.normal = h.faces[1].plane.normal * 2; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.faces[1].plane.offset -= 0.1f; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.face_vertices[2] = 1000; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { std::swap(h.face_vertices[0], h.face_vertices[1]); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.edges.pop_back(); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { std::swap(h.edges[3].face_a, h.edges[3].face_b); }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { h.edges[3].face_a = 5000; }), "");
-    EXPECT_NE(spoilt([](ConvexHull& h) { std::swap(h.edges[3].from, h.edges[3].to); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.vertices.resize(3); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.vertices.pop_back(); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.vertices[0] = h.vertices[0] * 3; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.vertices[0].y = std::numeric_limits<float>::quiet_NaN(); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.vertices[1].x = 2e5f; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.faces.pop_back(); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.faces[1].first = 0; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.faces[1].count = 0xffffffff; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.faces[1].plane.normal = h.faces[1].plane.normal * 2; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.faces[1].plane.offset -= 0.1f; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.face_vertices[2] = 1000; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { std::swap(h.face_vertices[0], h.face_vertices[1]); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.edges.pop_back(); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { std::swap(h.edges[3].face_a, h.edges[3].face_b); }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { h.edges[3].face_a = 5000; }), "");
+    EXPECT_NE(corrupted([](ConvexHull& h) { std::swap(h.edges[3].from, h.edges[3].to); }), "");
 }
 
 }  // namespace

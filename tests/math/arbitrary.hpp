@@ -7,7 +7,7 @@
 
 namespace fase::test {
 
-/// A number of any size from about 1e-4 to 1e4, or a small whole one.
+/// A number of any size from about 1e-4 to 1e4, or a small integer.
 inline double number() {
     const int mantissa = *rc::gen::inRange(-100000, 100001);
     const int exponent = *rc::gen::inRange(0, 9);
@@ -15,7 +15,7 @@ inline double number() {
     for (int i = 0; i < exponent; ++i) size *= 0.1;
     return mantissa * size;
 }
-/// Axis angles, halves and identity turn up often; all else is anywhere.
+/// A rotation; those about an axis, half turns and the identity are frequent.
 inline Quatd rotation() {
     const int kind = *rc::gen::inRange(0, 4);
     const int range = kind == 0 ? 1 : 1000;

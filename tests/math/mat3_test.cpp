@@ -42,7 +42,7 @@ RC_GTEST_PROP(Mat3, determinants_multiply, (const Mat3d& a, const Mat3d& b)) {
     RC_ASSERT(std::abs(determinant(transpose(a)) - determinant(a)) <= 1e-13 * size_of(a) * size_of(a) * size_of(a));
 }
 
-TEST(Mat3, without_a_volume_has_no_inverse) {
+TEST(Mat3, of_determinant_0_has_the_inverse_0) {
     EXPECT_EQ(inverse(Mat3{{1, 2, 3}, {2, 4, 6}, {0, 0, 1}}), Mat3{});
     EXPECT_EQ(inverse(Mat3{}), Mat3{});
 }

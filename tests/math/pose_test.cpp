@@ -1,4 +1,4 @@
-/// Poses: rigid motions that compose and invert.
+/// Poses: composition and inversion of rigid transforms.
 #include "fase/math/pose.hpp"
 
 #include <gtest/gtest.h>
@@ -29,13 +29,13 @@ RC_GTEST_PROP(Pose, relative_takes_points_of_one_body_to_the_other, (const Pose&
     RC_ASSERT(length(again.position - b.position) <= 4e-6 * size);
 }
 
-TEST(Pose, tells_a_tenth_of_a_millimetre_apart_ten_thousand_kilometres_away) {
+TEST(Pose, resolves_a_tenth_of_a_millimetre_at_ten_thousand_kilometres) {
     const Pose a{{1e7, -1e7, 1e7}, {}}, b{{1e7 + 1e-4, -1e7, 1e7}, {}};
     EXPECT_NEAR(relative(a, b).position.x, 1e-4f, 1e-8f);
     EXPECT_NEAR(transform_back(a, transform(b, Vec3{0.5f, 0, 0})).x, 0.5001f, 1e-7f);
 }
 
-TEST(Pose, relative_to_itself_is_exactly_nothing) {
+TEST(Pose, relative_to_itself_is_exactly_zero) {
     const Pose a{{1e7 / 3, 2, 3}, normalized(Quat{1, 2, 3, 4})};
     EXPECT_EQ(relative(a, a).position, Vec3{});
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(Vec3, is_reached_by_name_and_by_index) {
+TEST(Vec3, has_access_by_name_and_by_index) {
     Vec3 v{1, 2, 3};
     EXPECT_EQ(v[0], v.x);
     EXPECT_EQ(v[1], v.y);
@@ -25,7 +25,7 @@ TEST(Vec3, is_reached_by_name_and_by_index) {
     EXPECT_EQ(v, (Vec3{4, 20, 6}));
 }
 
-RC_GTEST_PROP(Vec3, cross_is_at_right_angles_and_turns_by_the_right_hand, (const Vec3d& a, const Vec3d& b)) {
+RC_GTEST_PROP(Vec3, cross_is_perpendicular_and_right_handed, (const Vec3d& a, const Vec3d& b)) {
     const Vec3d c = cross(a, b);
     const double size = length(a) * length(b);
     RC_ASSERT(std::abs(dot(c, a)) <= 1e-14 * size * length(a));
@@ -44,19 +44,19 @@ RC_GTEST_PROP(Vec3, normalized_is_unit_and_along, (const Vec3& a)) {
     RC_ASSERT(dot(n, a) > 0);
 }
 
-TEST(Vec3, of_no_length_normalizes_to_zero) {
+TEST(Vec3, of_length_0_normalizes_to_zero) {
     EXPECT_EQ(normalized(Vec3{}), Vec3{});
     EXPECT_EQ(normalized(Vec3{1e-30f, 0, 0}), Vec3{}) << "its square is 0";
 }
 
-RC_GTEST_PROP(Vec3, any_perpendicular_is_unit_and_at_right_angles, (const Vec3& a)) {
+RC_GTEST_PROP(Vec3, any_perpendicular_is_unit_and_perpendicular, (const Vec3& a)) {
     RC_PRE(length(a) > 1e-3f);
     const Vec3 n = normalized(a), p = any_perpendicular(n);
     RC_ASSERT(std::abs(length(p) - 1) < 1e-6f);
     RC_ASSERT(std::abs(dot(p, n)) < 1e-6f);
 }
 
-TEST(Vec3, any_perpendicular_holds_at_the_poles) {
+TEST(Vec3, any_perpendicular_is_valid_at_the_poles) {
     for (const Vec3 n : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{0, 0, -0.0f}, Vec3{0, 1, 0}, Vec3{-1, 0, 0}}) {
         if (length(n) == 0) continue;
         EXPECT_FLOAT_EQ(length(any_perpendicular(n)), 1);
@@ -64,13 +64,13 @@ TEST(Vec3, any_perpendicular_holds_at_the_poles) {
     }
 }
 
-TEST(Vec3, min_and_max_take_the_second_for_NaN) {
+TEST(Vec3, min_and_max_return_the_second_for_NaN) {
     EXPECT_EQ(min(Vec3{nan, 1, 5}, Vec3{2, 3, 4}), (Vec3{2, 1, 4}));
     EXPECT_EQ(max(Vec3{nan, 1, 5}, Vec3{2, 3, 4}), (Vec3{2, 3, 5}));
     EXPECT_EQ(abs(Vec3{-1, 2, -3}), (Vec3{1, 2, 3}));
 }
 
-TEST(Vec3, is_finite_sees_each_component) {
+TEST(Vec3, is_finite_tests_each_component) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     EXPECT_TRUE(is_finite(Vec3{1, 2, 3}));
     for (const float bad : {nan, inf, -inf}) {

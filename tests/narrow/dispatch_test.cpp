@@ -1,4 +1,4 @@
-/// The table of all pairs: complete, symmetric, and the same alone as in a batch.
+/// The table of all pairs: complete, symmetric, and equal for single calls and batches.
 #include "fase/narrow/dispatch.hpp"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ bool same(const Manifold& a, const Manifold& b) {
     if (a.count != b.count || !(a.normal == b.normal)) return false;
     for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
         const narrow::ManifoldPoint &p = a.points[i], &q = b.points[i];
-        if (!(p.at == q.at) || p.separation != q.separation || p.feature != q.feature) return false;
+        if (!(p.position == q.position) || p.separation != q.separation || p.feature != q.feature) return false;
     }
     return true;
 }
 
 LocalPose random_pose(Random& random) { return {random_in_cube(random) * 1.5f, to_float(random_rotation(random))}; }
 
-TEST(Dispatch, ABatchGivesBitForBitWhatSingleCallsGive) {
+TEST(Dispatch, ABatchGivesTheSameBitsAsSingleCalls) {
     Random random(1);
     std::vector<Shape> shapes;
     for (int i = 0; i < 60; ++i) shapes.push_back(random_shape(random, random.below(AllShapes::count)));
@@ -45,7 +45,7 @@ TEST(Dispatch, ABatchGivesBitForBitWhatSingleCallsGive) {
     narrow::collide_batch({});
 }
 
-TEST(Dispatch, EveryPairOfKindsAnswersAndTellsWhichWayItWent) {
+TEST(Dispatch, SupportsEveryPairOfKindsAndReportsSpecialPairs) {
     Random random(2);
     for (std::size_t i = 0; i < AllShapes::count; ++i) {
         for (std::size_t k = 0; k < AllShapes::count; ++k) {
@@ -65,7 +65,7 @@ TEST(Dispatch, EveryPairOfKindsAnswersAndTellsWhichWayItWent) {
     EXPECT_FALSE(narrow::has_special_pair(0, AllShapes::count));
 }
 
-TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactTurnedRound) {
+TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactFlipped) {
     Random random(3);
     for (int i = 0; i < 20000; ++i) {
         const std::size_t kind_a = random.below(AllShapes::count), kind_b = random.below(AllShapes::count);
@@ -74,20 +74,20 @@ TEST(Dispatch, TheOtherOrderOfASpecialPairIsTheSameContactTurnedRound) {
         const LocalPose x = random_pose(random);
         const Manifold m = collide(a, b, x, 0.05f);
         const Manifold back = narrow::flipped(collide(b, a, inverse(x), 0.05f), x);
-        // Only rounding lies between: a point at the very margin may come or go.
+        // They differ by rounding only: a point exactly at the margin may be added or missing.
         if (m.count != back.count) continue;
         if (m.count == 0 || dot(m.normal, back.normal) < 0.999f) continue;
         for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
             float nearest = 1e9f;
             for (std::size_t j = 0; j < static_cast<std::size_t>(m.count); ++j) {
-                nearest = std::min(nearest, length(m.points[k].at - back.points[j].at));
+                nearest = std::min(nearest, length(m.points[k].position - back.points[j].position));
             }
             ASSERT_LT(nearest, 1e-3f) << name_of(a) << " " << name_of(b) << " " << i;
         }
     }
 }
 
-TEST(Dispatch, BoxesAndHullsRestOnFourPointsWhateverTheirSmallTilt) {
+TEST(Dispatch, BoxesAndHullsRestOnFourPointsForAnySmallTilt) {
     Random random(5);
     const std::vector<Shape> cubes{Box{{0.5f, 0.5f, 0.5f}}, box_hull({0.5f, 0.5f, 0.5f})};
     for (const Shape& a : cubes) {
@@ -104,7 +104,7 @@ TEST(Dispatch, BoxesAndHullsRestOnFourPointsWhateverTheirSmallTilt) {
     }
 }
 
-/// Special pairs are judged by the general path: where both see a contact, normals and least separations agree.
+/// Compares special pairs with the general path: where both have a contact, normals and minimum separations agree.
 TEST(Dispatch, SpecialPairsAgreeWithTheGeneralPath) {
     Random random(4);
     int compared = 0, different = 0;
@@ -114,17 +114,17 @@ TEST(Dispatch, SpecialPairsAgreeWithTheGeneralPath) {
         const Shape a = random_shape(random, kind_a), b = random_shape(random, kind_b);
         const LocalPose x = random_pose(random);
         const Manifold special = collide(a, b, x, 0.05f), general = narrow::collide_general(a, b, x, 0.05f);
-        float least = 0.05f, min_general = 0.05f;
+        float min_special = 0.05f, min_general = 0.05f;
         for (int k = 0; k < special.count; ++k)
-            least = std::min(least, special.points[static_cast<std::size_t>(k)].separation);
+            min_special = std::min(min_special, special.points[static_cast<std::size_t>(k)].separation);
         for (int k = 0; k < general.count; ++k) {
             min_general = std::min(min_general, general.points[static_cast<std::size_t>(k)].separation);
         }
         const float slack = 5e-3f + 0.03f * std::abs(min_general);
-        ASSERT_NEAR(least, min_general, slack) << i << " " << name_of(a) << " " << name_of(b);
+        ASSERT_NEAR(min_special, min_general, slack) << i << " " << name_of(a) << " " << name_of(b);
         if (special.count == 0 || general.count == 0) continue;
         ++compared;
-        // Nearly equal ways out: either is right.
+        // Two directions of nearly the same depth: both are right.
         different += dot(special.normal, general.normal) < 0.99f;
     }
     EXPECT_GT(compared, 5000);

@@ -1,4 +1,4 @@
-/// Signed distances: proofs by witness points and separating planes, exact formulas, symmetry, degenerate places.
+/// Signed distances: proofs by witness points and separating planes, exact formulas, symmetry, degenerate poses.
 #include "fase/narrow/distance.hpp"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ using narrow::Distance;
 using narrow::signed_distance;
 using namespace test;
 
-/// Everything that can be proved of a distance without another algorithm; returns what is wrong.
+/// Checks a distance by its witness points and plane; returns the fault, or an empty string.
 std::string wrong_with(const Distance& d, const Shape& a, const Shape& b, const TransformD& x, double tolerance) {
     if (!(std::abs(length(d.normal) - 1) < 1e-12)) return "normal not unit";
     if (!(length(d.on_b - d.on_a - d.normal * d.distance) < tolerance)) return "points are not `distance` apart";
-    // A plane with that much room on its two sides proves that the shapes are at least so far apart; the points, that
-    // they are no farther. When the shapes overlap, the move along the normal separates them.
+    // The gap along the normal proves that the shapes are at least that far apart; the points prove that they are no
+    // farther. When the shapes overlap, the translation along the normal separates them.
     if (!(std::abs(gap_along(a, b, x, d.normal) - d.distance) < tolerance)) return "gap along the normal differs";
     const double out_a = outside(a, d.on_a), out_b = outside(b, transform_back(x, d.on_b));
     if (!(std::abs(out_a) < tolerance)) return "point of a off its surface by " + std::to_string(out_a * 1e9) + " nm";
@@ -33,8 +33,8 @@ double tolerance_of(const Shape& a, const Shape& b) {
     const auto either = [&]<class S>(std::type_identity<S>) {
         return std::holds_alternative<S>(a) || std::holds_alternative<S>(b);
     };
-    // The planes of a hull are floats, and so is the judge of its points; ways out of cylinders are approached; cores
-    // that all but touch show their normal to the square root of rounding.
+    // The planes of a hull are floats, and so is the reference for its points; penetrations of cylinders are iterative;
+    // cores that nearly touch have a normal accurate to the square root of rounding.
     if (either(std::type_identity<ConvexHull>{})) return 3e-6;
     return either(std::type_identity<Cylinder>{}) ? 3e-6 : 3e-9;
 }
@@ -55,7 +55,7 @@ TEST(Distance, IsProvedByItsPointsAndPlaneForRandomPairsOfAllKinds) {
     EXPECT_GT(deep, 10000);
 }
 
-TEST(Distance, OfNeedlesPlatesAndDustKeepsItsProof) {
+TEST(Distance, IsProvedForNeedlesPlatesAndDust) {
     Random random(2);
     for (int i = 0; i < 20000; ++i) {
         const Shape a = random_shape(random, random.below(4), 1e6f);
@@ -63,13 +63,13 @@ TEST(Distance, OfNeedlesPlatesAndDustKeepsItsProof) {
         TransformD x = random_transform(random, 1.5);
         if (i % 3 == 0) x.position = x.position * 1e-3;
         const Distance d = signed_distance(a, b, x);
-        // A point near the axis of a wide cylinder has nearly equal ways out all around.
+        // A point near the axis of a wide cylinder has nearly the same depth in all radial directions.
         const double tolerance = tolerance_of(a, b) * 20;
         ASSERT_EQ(wrong_with(d, a, b, x, tolerance), "") << i << " " << name_of(a) << " " << name_of(b);
     }
 }
 
-TEST(Distance, NoDirectionOutIsShorterThanTheDepth) {
+TEST(Distance, NoDirectionHasASmallerDepth) {
     Random random(3);
     int checked = 0;
     while (checked < 1500) {
@@ -79,7 +79,7 @@ TEST(Distance, NoDirectionOutIsShorterThanTheDepth) {
         const Distance d = signed_distance(a, b, x);
         if (d.distance > 0) continue;
         ++checked;
-        // Many directions, and a walk downhill from the best of them.
+        // Many directions, and a descent from the best of them.
         double best = 1e300;
         Vec3d direction;
         const auto attempt = [&](Vec3d n) {
@@ -97,7 +97,7 @@ TEST(Distance, NoDirectionOutIsShorterThanTheDepth) {
     }
 }
 
-TEST(Distance, IsTheSameSeenFromTheOtherShapeAndAfterAnyMotionOfBoth) {
+TEST(Distance, IsSymmetricAndInvariantUnderRigidMotion) {
     Random random(4);
     for (int i = 0; i < 20000; ++i) {
         const Shape a = random_shape(random, random.below(AllShapes::count));
@@ -109,8 +109,8 @@ TEST(Distance, IsTheSameSeenFromTheOtherShapeAndAfterAnyMotionOfBoth) {
         if (d.distance > 1e-3) {
             ASSERT_LT(length(d.normal + x.rotation * back.normal), 1e-4) << i << name_of(a) << name_of(b);
         }
-        const TransformD place = random_transform(random, 10);
-        const TransformD again = inverse(place) * (place * x);
+        const TransformD motion = random_transform(random, 10);
+        const TransformD again = inverse(motion) * (motion * x);
         ASSERT_NEAR(signed_distance(a, b, again).distance, d.distance, tolerance);
     }
 }
@@ -149,7 +149,7 @@ TEST(Distance, OfTheSameShapeAsBoxAndAsHullAgrees) {
     }
 }
 
-TEST(Distance, WhereShapesTouchOrCoincideIsFiniteAndProved) {
+TEST(Distance, IsFiniteAndProvedForTouchingAndCoincidentShapes) {
     Random random(7);
     const std::vector<Shape> shapes{Sphere{0.5f}, Box{{0.5f, 0.5f, 0.5f}}, Capsule{0.25f, 0.5f}, Cylinder{0.5f, 0.5f},
                                     box_hull({0.5f, 0.5f, 0.5f})};
@@ -197,7 +197,7 @@ TEST(Distance, FarFromTheOriginKeepsItsRelativePrecision) {
     }
 }
 
-TEST(Distance, ToAHalfSpaceIsThatOfTheLowestPoint) {
+TEST(Distance, ToAHalfSpaceIsTheHeightOfTheLowestPoint) {
     Random random(9);
     for (int i = 0; i < 5000; ++i) {
         const Shape b = random_shape(random, random.below(bounded_kinds));

@@ -1,4 +1,4 @@
-/// Shapes on the ground: the points they rest on, and that those stay the same.
+/// Shapes on a half-space: their contact points at rest, and the stability of those.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -19,9 +19,9 @@ using narrow::Manifold;
 constexpr float h = 0.70710678f;
 constexpr Quat lying = {0, 0, h, h};  // the shape's y axis along the ground
 
-/// The ground seen from a shape that is turned by `turn` and stands with its origin `height` above it.
-LocalPose ground_under(float height, Quat turn) {
-    const Quat back = conjugate(turn);
+/// The pose of the ground in the frame of a shape with the given rotation and its origin `height` above the ground.
+LocalPose ground_under(float height, Quat rotation) {
+    const Quat back = conjugate(rotation);
     return {rotate(back, Vec3{0, -height, 0}), back};
 }
 
@@ -31,8 +31,8 @@ std::set<std::uint32_t> features(const Manifold& m) {
     return names;
 }
 
-/// Turned and moved by up to 1e-4, a shape keeps the names of its points.
-template <class S> void expect_stays(const S& shape, float height, Quat turn, int count) {
+/// Checks that the features do not change under rotations and translations of up to 1e-4.
+template <class S> void expect_stable(const S& shape, float height, Quat turn, int count) {
     Random random(1);
     const Manifold rest = collide(shape, HalfSpace{}, ground_under(height, turn), 0.02f);
     ASSERT_EQ(rest.count, count);
@@ -46,34 +46,34 @@ template <class S> void expect_stays(const S& shape, float height, Quat turn, in
     }
 }
 
-TEST(GroundPairs, ABallTouchesInOnePointBelowItsCentre) {
+TEST(GroundPairs, ASphereTouchesAtOnePointBelowItsCentre) {
     for (const float gap : {-0.4f, -0.01f, 0.f, 0.01f}) {
         const Manifold m = collide(Sphere{0.5f}, HalfSpace{}, ground_under(0.5f + gap, {}), 0.02f);
         ASSERT_EQ(m.count, 1);
         EXPECT_NEAR(m.points[0].separation, gap, 1e-6f);
-        EXPECT_NEAR(m.points[0].at.y, -0.5f - 0.5f * gap, 1e-6f);
+        EXPECT_NEAR(m.points[0].position.y, -0.5f - 0.5f * gap, 1e-6f);
         EXPECT_EQ(m.normal, (Vec3{0, -1, 0}));
     }
     EXPECT_EQ(collide(Sphere{0.5f}, HalfSpace{}, ground_under(0.53f, {}), 0.02f).count, 0);
 }
 
 TEST(GroundPairs, ABoxRestsOnFourCornersTwoOrOne) {
-    expect_stays(Box{}, 0.5f, {}, 4);
-    expect_stays(Box{}, 0.5f, lying, 4);
-    expect_stays(Box{}, h, Quat{0.38268343f, 0, 0, 0.92387953f}, 2);
-    expect_stays(Box{}, 0.8660254f, normalized(Quat{0.32505758f, 0, -0.32505758f, 0.88807383f}), 1);
+    expect_stable(Box{}, 0.5f, {}, 4);
+    expect_stable(Box{}, 0.5f, lying, 4);
+    expect_stable(Box{}, h, Quat{0.38268343f, 0, 0, 0.92387953f}, 2);
+    expect_stable(Box{}, 0.8660254f, normalized(Quat{0.32505758f, 0, -0.32505758f, 0.88807383f}), 1);
 }
 
 TEST(GroundPairs, ACapsuleLiesOnTwoPointsAndStandsOnOne) {
-    expect_stays(Capsule{0.25f, 0.5f}, 0.25f, lying, 2);
-    expect_stays(Capsule{0.25f, 0.5f}, 0.75f, {}, 1);
+    expect_stable(Capsule{0.25f, 0.5f}, 0.25f, lying, 2);
+    expect_stable(Capsule{0.25f, 0.5f}, 0.75f, {}, 1);
     EXPECT_EQ(collide(Capsule{0.25f, 0}, HalfSpace{}, ground_under(0.25f, lying), 0.02f).count, 1);
 }
 
 TEST(GroundPairs, ACylinderStandsOnFourPointsAndLiesOnTwo) {
-    expect_stays(Cylinder{0.5f, 1}, 1, {}, 4);
-    expect_stays(Cylinder{0.5f, 1}, 1, Quat{1, 0, 0, 0}, 4);
-    expect_stays(Cylinder{0.5f, 1}, 0.5f, lying, 2);
+    expect_stable(Cylinder{0.5f, 1}, 1, {}, 4);
+    expect_stable(Cylinder{0.5f, 1}, 1, Quat{1, 0, 0, 0}, 4);
+    expect_stable(Cylinder{0.5f, 1}, 0.5f, lying, 2);
 }
 
 TEST(GroundPairs, ATiltedCylinderTouchesWithTheDeepestPointOfItsRim) {
@@ -84,33 +84,37 @@ TEST(GroundPairs, ATiltedCylinderTouchesWithTheDeepestPointOfItsRim) {
         const Vec3 down = rotate_back(turn, Vec3{0, -1, 0});
         const float reach = -rotate(turn, cylinder.core_support(down)).y;
         const Manifold m = collide(cylinder, HalfSpace{}, ground_under(reach - 0.01f, turn), 0.02f);
-        float least = 1;
-        for (int k = 0; k < m.count; ++k) least = std::min(least, m.points[static_cast<std::size_t>(k)].separation);
-        ASSERT_NEAR(least, -0.01f, 1e-5f);
+        float deepest = 1;
+        for (int k = 0; k < m.count; ++k) {
+            deepest = std::min(deepest, m.points[static_cast<std::size_t>(k)].separation);
+        }
+        ASSERT_NEAR(deepest, -0.01f, 1e-5f);
     }
 }
 
-TEST(GroundPairs, ACylinderTiltsFromFourPointsToOneWithoutAJumpInDepth) {
+TEST(GroundPairs, TheDepthOfATiltingCylinderIsContinuous) {
     float before = 0;
     for (int i = 0; i <= 2000; ++i) {
         const float tilt = 1e-5f * static_cast<float>(i);
         const Quat turn = normalized(Quat{0.5f * tilt, 0, 0.3f * tilt, 1});
         const Manifold m = collide(Cylinder{0.5f, 1}, HalfSpace{}, ground_under(1, turn), 0.02f);
         ASSERT_GT(m.count, 0);
-        float least = 1;
-        for (int k = 0; k < m.count; ++k) least = std::min(least, m.points[static_cast<std::size_t>(k)].separation);
-        ASSERT_NEAR(least, before, 3e-4f);
-        before = least;
+        float deepest = 1;
+        for (int k = 0; k < m.count; ++k) {
+            deepest = std::min(deepest, m.points[static_cast<std::size_t>(k)].separation);
+        }
+        ASSERT_NEAR(deepest, before, 3e-4f);
+        before = deepest;
     }
 }
 
 TEST(GroundPairs, AHullRestsOnTheCornersOfItsFace) {
     const ConvexHull cube = test::box_hull({0.5f, 0.5f, 0.5f});
-    expect_stays(cube, 0.5f, {}, 4);
-    expect_stays(cube, h, Quat{0.38268343f, 0, 0, 0.92387953f}, 2);
+    expect_stable(cube, 0.5f, {}, 4);
+    expect_stable(cube, h, Quat{0.38268343f, 0, 0, 0.92387953f}, 2);
 }
 
-TEST(GroundPairs, AHullWithManyCornersDownKeepsFourFarApart) {
+TEST(GroundPairs, AHullOnAFaceWithManyCornersHasFourPointsFarApart) {
     std::vector<Vec3> points;
     for (int i = 0; i < 100; ++i) {
         const float angle = 6.2831853f * static_cast<float>(i) / 100;
@@ -120,11 +124,11 @@ TEST(GroundPairs, AHullWithManyCornersDownKeepsFourFarApart) {
     ASSERT_TRUE(drum.has_value());
     const Manifold m = collide(*drum, HalfSpace{}, ground_under(0.495f, {}), 0.02f);
     ASSERT_EQ(m.count, 4);
-    Vec3 lo = m.points[0].at, hi = lo;
+    Vec3 lo = m.points[0].position, hi = lo;
     for (const auto& point : m.points) {
         EXPECT_NEAR(point.separation, -0.005f, 1e-5f);
-        lo = min(lo, point.at);
-        hi = max(hi, point.at);
+        lo = min(lo, point.position);
+        hi = max(hi, point.position);
     }
     EXPECT_GT(hi.x - lo.x, 1.2f);
     EXPECT_GT(hi.z - lo.z, 1.2f);

@@ -1,4 +1,4 @@
-/// Capsules and hulls that lie on each other: the points they rest on, and that those stay the same.
+/// Capsules and hulls that rest on each other: their contact points, and the stability of those.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -25,9 +25,9 @@ std::set<std::uint32_t> features(const Manifold& m) {
     return names;
 }
 
-/// Turned and moved by up to 1e-4, the pair keeps its points and their names.
+/// Checks that the points and features do not change under rotations and translations of up to 1e-4.
 template <class A, class B>
-void expect_stays(const A& a, const B& b, const LocalPose& rest, int count, float separation) {
+void expect_stable(const A& a, const B& b, const LocalPose& rest, int count, float separation) {
     Random random(1);
     const Manifold first = collide(a, b, rest, 0.02f);
     ASSERT_EQ(first.count, count);
@@ -43,16 +43,16 @@ void expect_stays(const A& a, const B& b, const LocalPose& rest, int count, floa
 }
 
 TEST(LyingPairs, ACapsuleLiesOnABoxWithTwoPoints) {
-    expect_stays(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.745f, 0.2f}, lying}, 2, -0.005f);
-    expect_stays(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.76f, 0.2f}, lying}, 2, 0.01f);
-    // Half over the side.
-    expect_stays(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{2, 0.745f, 0.2f}, lying}, 2, -0.005f);
-    // So deep that the segment is inside.
-    expect_stays(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.4f, 0.2f}, lying}, 2, -0.35f);
+    expect_stable(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.745f, 0.2f}, lying}, 2, -0.005f);
+    expect_stable(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.76f, 0.2f}, lying}, 2, 0.01f);
+    // Half over an edge of the box.
+    expect_stable(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{2, 0.745f, 0.2f}, lying}, 2, -0.005f);
+    // The segment is inside the box.
+    expect_stable(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 0.4f, 0.2f}, lying}, 2, -0.35f);
 }
 
 TEST(LyingPairs, ACapsuleStandsOnABoxWithOnePoint) {
-    expect_stays(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 1.245f, 0.2f}, {}}, 1, -0.005f);
+    expect_stable(Box{{2, 0.5f, 2}}, Capsule{0.25f, 0.5f}, {{0.1f, 1.245f, 0.2f}, {}}, 1, -0.005f);
 }
 
 TEST(LyingPairs, ACapsuleOverAnEdgeOfABoxTouchesInOnePoint) {
@@ -64,16 +64,16 @@ TEST(LyingPairs, ACapsuleOverAnEdgeOfABoxTouchesInOnePoint) {
     EXPECT_NEAR(m.normal.y, h, 1e-5f);
 }
 
-TEST(LyingPairs, ParallelCapsulesTouchAtBothEndsOfTheStretchTheyShare) {
-    expect_stays(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{0.495f, 0, 0}, {}}, 2, -0.005f);
+TEST(LyingPairs, ParallelCapsulesTouchAtBothEndsOfTheSharedInterval) {
+    expect_stable(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{0.495f, 0, 0}, {}}, 2, -0.005f);
     const Manifold m = collide(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{0.495f, 0.6f, 0}, {}}, 0.02f);
     ASSERT_EQ(m.count, 2);
-    EXPECT_NEAR(m.points[0].at.y, 0.1f, 1e-5f);
-    EXPECT_NEAR(m.points[1].at.y, 0.5f, 1e-5f);
+    EXPECT_NEAR(m.points[0].position.y, 0.1f, 1e-5f);
+    EXPECT_NEAR(m.points[1].position.y, 0.5f, 1e-5f);
 }
 
 TEST(LyingPairs, CrossedCapsulesTouchInOnePoint) {
-    expect_stays(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{0, 0.1f, 0.495f}, lying}, 1, -0.005f);
+    expect_stable(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{0, 0.1f, 0.495f}, lying}, 1, -0.005f);
     const Manifold through = collide(Capsule{0.25f, 0.5f}, Capsule{0.25f, 0.5f}, {{}, lying}, 0.02f);
     ASSERT_EQ(through.count, 1);
     EXPECT_NEAR(std::abs(through.normal.z), 1, 1e-6f);
@@ -82,21 +82,21 @@ TEST(LyingPairs, CrossedCapsulesTouchInOnePoint) {
 
 TEST(LyingPairs, ACapsuleLiesOnAHullWithTwoPoints) {
     const ConvexHull slab = test::box_hull({2, 0.5f, 2});
-    const auto turned = [](Vec3 at, Quat q) { return inverse(LocalPose{at, q}); };
-    expect_stays(Capsule{0.25f, 0.5f}, slab, turned({0.1f, 0.745f, 0.2f}, lying), 2, -0.005f);
-    expect_stays(Capsule{0.25f, 0.5f}, slab, turned({0.1f, 0.4f, 0.2f}, lying), 2, -0.35f);
-    expect_stays(Capsule{0.25f, 0.5f}, slab, turned({0.1f, 1.245f, 0.2f}, {}), 1, -0.005f);
+    const auto hull_in_capsule = [](Vec3 position, Quat q) { return inverse(LocalPose{position, q}); };
+    expect_stable(Capsule{0.25f, 0.5f}, slab, hull_in_capsule({0.1f, 0.745f, 0.2f}, lying), 2, -0.005f);
+    expect_stable(Capsule{0.25f, 0.5f}, slab, hull_in_capsule({0.1f, 0.4f, 0.2f}, lying), 2, -0.35f);
+    expect_stable(Capsule{0.25f, 0.5f}, slab, hull_in_capsule({0.1f, 1.245f, 0.2f}, {}), 1, -0.005f);
 }
 
-TEST(LyingPairs, HullsOfBoxesRestAsBoxesDo) {
+TEST(LyingPairs, HullsOfBoxesRestOnFourPoints) {
     const ConvexHull cube = test::box_hull({0.5f, 0.5f, 0.5f});
     for (const Vec3 place : {Vec3{0, 0.995f, 0}, Vec3{0.5f, 0.995f, 0}, Vec3{0.3f, 0.995f, -0.2f}}) {
-        expect_stays(cube, cube, {place, {}}, 4, -0.005f);
-        expect_stays(Box{}, cube, {place, {}}, 4, -0.005f);
+        expect_stable(cube, cube, {place, {}}, 4, -0.005f);
+        expect_stable(Box{}, cube, {place, {}}, 4, -0.005f);
     }
 }
 
-TEST(LyingPairs, FacesWithMoreCornersThanAnyBufferGiveFourPointsFarApart) {
+TEST(LyingPairs, FacesWithMoreCornersThanTheBuffersGiveFourPointsFarApart) {
     const auto drum = [](int corners) {
         std::vector<Vec3> points;
         for (int i = 0; i < corners; ++i) {
@@ -108,12 +108,12 @@ TEST(LyingPairs, FacesWithMoreCornersThanAnyBufferGiveFourPointsFarApart) {
     const ConvexHull a = drum(120), b = drum(100);
     const Manifold m = collide(a, b, {{0.1f, 0.99f, 0}, {}}, 0.02f);
     ASSERT_EQ(m.count, 4);
-    Vec3 lo = m.points[0].at, hi = lo;
+    Vec3 lo = m.points[0].position, hi = lo;
     for (const auto& point : m.points) {
         EXPECT_NEAR(point.separation, -0.01f, 1e-4f);
-        EXPECT_LE(std::sqrt(point.at.x * point.at.x + point.at.z * point.at.z), 1.01f);
-        lo = min(lo, point.at);
-        hi = max(hi, point.at);
+        EXPECT_LE(std::sqrt(point.position.x * point.position.x + point.position.z * point.position.z), 1.01f);
+        lo = min(lo, point.position);
+        hi = max(hi, point.position);
     }
     EXPECT_GT(hi.x - lo.x, 1.f);
     EXPECT_GT(hi.z - lo.z, 1.f);

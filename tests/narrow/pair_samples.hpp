@@ -6,7 +6,7 @@
 
 namespace fase::test {
 
-/// Two shapes and their place; `size`: the sum of their largest extents, for tolerances.
+/// Two shapes and their relative pose; `size`: the sum of their largest extents, for tolerances.
 struct PairSample {
     Shape a, b;
     LocalPose b_in_a;
@@ -15,43 +15,41 @@ struct PairSample {
 
 /// Half the largest extent of a shape along the axes of its frame; 0 for a half-space.
 inline double reach_of(const Shape& shape) {
-    double most = 0;
+    double reach = 0;
     if (std::holds_alternative<HalfSpace>(shape)) return 0;
     for (const Vec3d axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
-        most = std::max({most, std::abs(dot(axis, support(shape, axis))), std::abs(dot(axis, support(shape, -axis)))});
+        reach =
+            std::max({reach, std::abs(dot(axis, support(shape, axis))), std::abs(dot(axis, support(shape, -axis)))});
     }
-    return most;
+    return reach;
 }
 
 inline void scale(Shape& shape, float by) {
-    struct Scale {
-        float by;
-        void operator()(Sphere& s) const { s.radius *= by; }
-        void operator()(Box& s) const { s.half *= by; }
-        void operator()(Capsule& s) const { s.radius *= by, s.half_length *= by; }
-        void operator()(Cylinder& s) const { s.radius *= by, s.half_height *= by; }
-        void operator()(ConvexHull& s) const {
-            for (Vec3& v : s.vertices) v *= by;
-            for (ConvexHull::Face& face : s.faces) face.plane.offset *= by;
-        }
-        void operator()(HalfSpace&) const {}
-    };
-    std::visit(Scale{by}, shape);
+    std::visit(
+        [by]<class S>(S& s) {
+            if constexpr (SizedShape<S>) {
+                for (const ShapeSize<S>& size : S::sizes) size.in(s) *= by;
+            } else {
+                for (Vec3& v : s.vertices) v *= by;
+                for (ConvexHull::Face& face : s.faces) face.plane.offset *= by;
+            }
+        },
+        shape);
 }
 
-/// Moves b along `way` (unit) until the signed distance is about `wanted`, from wherever it is outside.
-inline void approach(PairSample& pair, Vec3d way, double wanted) {
+/// Moves b along `direction` (unit) until the signed distance is about `target`.
+inline void approach(PairSample& pair, Vec3d direction, double target) {
     for (int round = 0; round < 60; ++round) {
         const double distance = narrow::signed_distance(pair.a, pair.b, to_double(pair.b_in_a)).distance;
-        if (std::abs(distance - wanted) < 1e-6 * pair.size) return;
-        pair.b_in_a.position = to_float(to_double(pair.b_in_a.position) + way * (distance - wanted));
+        if (std::abs(distance - target) < 1e-6 * pair.size) return;
+        pair.b_in_a.position = to_float(to_double(pair.b_in_a.position) + direction * (distance - target));
     }
 }
 
 /// A pair of kinds (indices into AllShapes): scale from 1 mm to 1 km, b up to `ratio` times smaller or larger than a.
-/// One in four is turned by a quarter turn or not at all, so that faces, edges and axes come parallel.
-/// `wanted` is the signed distance to come near to, as a share of the smaller shape's size.
-inline PairSample random_pair(Random& random, std::size_t kind_a, std::size_t kind_b, float ratio, double wanted) {
+/// One in four has a rotation of 90° or none, so that faces, edges and axes are parallel.
+/// `target` is the approximate signed distance, as a fraction of the smaller shape's size.
+inline PairSample random_pair(Random& random, std::size_t kind_a, std::size_t kind_b, float ratio, double target) {
     PairSample pair{random_shape(random, kind_a), random_shape(random, kind_b), {}};
     const float overall = std::exp(random.between(std::log(1e-3f), std::log(1e3f)));
     const float other = std::exp(random.between(-std::log(ratio), std::log(ratio)));
@@ -71,12 +69,12 @@ inline PairSample random_pair(Random& random, std::size_t kind_a, std::size_t ki
     if (ground) {
         const Vec3 up = rotate(pair.b_in_a.rotation, Vec3{0, 1, 0});
         pair.b_in_a.position = to_float(random_direction(random) * pair.size);
-        approach(pair, to_double(-up) * -1.0, wanted * smaller);
+        approach(pair, to_double(-up) * -1.0, target * smaller);
         return pair;
     }
     const Vec3d from = random_direction(random);
     pair.b_in_a.position = to_float(from * (4 * pair.size) + random_direction(random) * (0.7 * pair.size));
-    approach(pair, -from, wanted * smaller);
+    approach(pair, -from, target * smaller);
     return pair;
 }
 

@@ -1,4 +1,4 @@
-/// Every pair of shapes with a function of its own, held against the exact signed distance: sizes from 1 mm to 1 km.
+/// Every special pair of shapes, compared with the exact signed distance: sizes from 1 mm to 1 km.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,11 +45,11 @@ template <class A_, class B_> struct PairOf {
 };
 
 double min_separation(const Manifold& manifold) {
-    double least = 1e300;
+    double deepest = 1e300;
     for (int k = 0; k < manifold.count; ++k) {
-        least = std::min(least, double(manifold.points[static_cast<std::size_t>(k)].separation));
+        deepest = std::min(deepest, double(manifold.points[static_cast<std::size_t>(k)].separation));
     }
-    return least;
+    return deepest;
 }
 
 double smaller_size(const PairSample& pair) {
@@ -94,7 +94,7 @@ TYPED_TEST(SpecialPair, KeepsTheContractOfTheManifold) {
             ASSERT_NEAR(length(m.normal), 1, 1e-6);
         }
         for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
-            ASSERT_TRUE(is_finite(m.points[k].at));
+            ASSERT_TRUE(is_finite(m.points[k].position));
             ASSERT_LE(m.points[k].separation, margin);
             for (std::size_t j = 0; j < k; ++j) ASSERT_NE(m.points[k].feature, m.points[j].feature);
         }
@@ -119,7 +119,7 @@ TYPED_TEST(SpecialPair, HasTheDepthOfTheExactDistance) {
         double tolerance = 1e-4 * pair.size;
         if (TypeParam::prefers_faces) tolerance += 0.05 * std::abs(exact);
         if (exact > 0 && TypeParam::polyhedra) {
-            // Apart, separations are measured along the best of the axes, which need not be that of the closest points.
+            // While apart, separations are along the best axis, which need not be that of the closest points.
             ASSERT_LE(error, 1e-4 * pair.size + 0.5 * margin);
             outliers += error > tolerance ? 1 : 0;
         } else {
@@ -129,14 +129,14 @@ TYPED_TEST(SpecialPair, HasTheDepthOfTheExactDistance) {
     EXPECT_LE(outliers, 15);
 }
 
-TYPED_TEST(SpecialPair, IsSeparatedByAMoveAlongTheNormal) {
+TYPED_TEST(SpecialPair, IsSeparatedByATranslationAlongTheNormal) {
     for_many_pairs<TypeParam>(4, 1500, [](const PairSample& pair, float, const Manifold& m, double exact) {
         if (m.count == 0 || exact > 0) return;
         TransformD apart = to_double(pair.b_in_a);
         apart.position = apart.position - to_double(m.normal) * min_separation(m);
-        // An edge contact that gave way to a face leaves a little.
-        const double left = TypeParam::prefers_faces ? 0.05 * std::abs(exact) : 0.0;
-        ASSERT_GE(narrow::signed_distance(pair.a, pair.b, apart).distance, -1e-4 * pair.size - left);
+        // A face that is preferred to an edge leaves a small overlap.
+        const double overlap = TypeParam::prefers_faces ? 0.05 * std::abs(exact) : 0.0;
+        ASSERT_GE(narrow::signed_distance(pair.a, pair.b, apart).distance, -1e-4 * pair.size - overlap);
     });
 }
 
@@ -144,14 +144,15 @@ TYPED_TEST(SpecialPair, HasTheGapOfTheDistanceAlongItsNormal) {
     for_many_pairs<TypeParam>(5, 3000, [](const PairSample& pair, float, const Manifold& m, double exact) {
         if (m.count == 0) return;
         const narrow::Distance truth = narrow::signed_distance(pair.a, pair.b, to_double(pair.b_in_a));
-        // Where another way out is nearly as short, the normal is free; so: the gap along it must be (nearly) the best.
+        // If another direction has nearly the same depth, the normal is ambiguous; so tests that the gap along it is
+        // nearly the best.
         if (std::holds_alternative<HalfSpace>(pair.b)) {
             ASSERT_GT(dot(to_double(m.normal), truth.normal), 1 - 1e-5);
             return;
         }
         const double gap = test::gap_along(pair.a, pair.b, to_double(pair.b_in_a), to_double(m.normal));
-        // Polyhedra prefer faces, whose shadow may reach far beyond what touches: the move along the normal judges
-        // them.
+        // Polyhedra prefer faces, whose projection may extend far beyond the contact: tested by the translation along
+        // the normal.
         if (!TypeParam::polyhedra) {
             ASSERT_NEAR(gap, exact, 1e-4 * pair.size + 0.02 * std::abs(exact));
         }
@@ -165,13 +166,14 @@ TYPED_TEST(SpecialPair, HasItsPointsHalfWayBetweenTheSurfaces) {
             return capsule ? capsule->radius + capsule->half_length : 0.f;
         };
         for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
-            const Vec3d at = to_double(m.points[k].at), reach = to_double(m.normal) * (0.5 * m.points[k].separation);
-            const Vec3d on_b = transform_back(to_double(pair.b_in_a), at + reach);
-            // Reference faces are a thousandth too large; the far end of a tilted capsule lies inside its own middle.
+            const Vec3d middle = to_double(m.points[k].position);
+            const Vec3d half = to_double(m.normal) * (0.5 * m.points[k].separation);
+            const Vec3d on_a = middle - half, on_b = transform_back(to_double(pair.b_in_a), middle + half);
+            // Reference faces are a thousandth too large; the point at the far end of a tilted capsule is inside it.
             const double tolerance = 2e-3 * pair.size;
-            ASSERT_LE(test::outside(pair.a, at - reach), tolerance);
+            ASSERT_LE(test::outside(pair.a, on_a), tolerance);
             ASSERT_LE(test::outside(pair.b, on_b), tolerance);
-            ASSERT_GE(test::outside(pair.a, at - reach), -tolerance - 2 * radius(pair.a));
+            ASSERT_GE(test::outside(pair.a, on_a), -tolerance - 2 * radius(pair.a));
             ASSERT_GE(test::outside(pair.b, on_b), -tolerance - 2 * radius(pair.b));
         }
     });
@@ -191,7 +193,7 @@ TYPED_TEST(SpecialPair, IsTheSameInEveryWorldFrame) {
         if (m.count > 0 && n.count > 0) {
             ASSERT_NEAR(min_separation(m), min_separation(n), 2e-3 * pair.size);
         } else {
-            // One has lost the contact at the edge of the margin.
+            // One of them has lost a contact close to the margin.
             ASSERT_TRUE(m.count == n.count || min_separation(m.count > 0 ? m : n) > margin - 1e-4 * pair.size);
         }
     }
@@ -211,7 +213,7 @@ TYPED_TEST(SpecialPair, AgreesWithTheGeneralPath) {
     EXPECT_LE(differ, all / 10);
 }
 
-TYPED_TEST(SpecialPair, StaysFiniteInDegeneratePlaces) {
+TYPED_TEST(SpecialPair, IsFiniteInDegeneratePoses) {
     Random random(9);
     constexpr float far = 1e7f;
     for (int i = 0; i < 300; ++i) {
@@ -232,7 +234,7 @@ TYPED_TEST(SpecialPair, StaysFiniteInDegeneratePlaces) {
                     ASSERT_NEAR(length(m.normal), 1, 1e-5);
                 }
                 for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
-                    ASSERT_TRUE(is_finite(m.points[k].at) && std::isfinite(m.points[k].separation));
+                    ASSERT_TRUE(is_finite(m.points[k].position) && std::isfinite(m.points[k].separation));
                     ASSERT_LE(m.points[k].separation, 0.01f * by);
                 }
             }
@@ -240,10 +242,10 @@ TYPED_TEST(SpecialPair, StaysFiniteInDegeneratePlaces) {
     }
 }
 
-/// Only pairs of one kind with itself can be turned round.
+/// Checks a pair of two shapes of the same kind in both orders.
 template <class S> void expect_mirrored(std::uint64_t seed) {
     Random random(seed);
-    int other_way = 0;
+    int different = 0;
     for (int i = 0; i < 2000; ++i) {
         const std::size_t kind = Shape(S{}).index();
         const PairSample pair = test::random_pair(random, kind, kind, 3, random.between(-0.2f, 0.04f));
@@ -255,30 +257,30 @@ template <class S> void expect_mirrored(std::uint64_t seed) {
             ASSERT_TRUE(m.count == n.count || min_separation(m.count > 0 ? m : n) > 0.5f * margin);
             continue;
         }
-        // Where a face of each is as good as the other, each order takes its own.
+        // If a face of each is equally good, each order prefers its first shape.
         ASSERT_NEAR(min_separation(m), min_separation(n),
                     1e-3 * pair.size + 0.06 * std::abs(min_separation(m)) + 0.2 * margin)
             << "pair " << i;
-        other_way += dot(m.normal, n.normal) < 0.98f ? 1 : 0;
+        different += dot(m.normal, n.normal) < 0.98f ? 1 : 0;
     }
-    EXPECT_LE(other_way, 40);
+    EXPECT_LE(different, 40);
 }
 
-TEST(SpecialPairs, AreMirroredWhenTheShapesChangePlaces) {
+TEST(SpecialPairs, AreFlippedWhenTheShapesAreSwapped) {
     expect_mirrored<Sphere>(11);
     expect_mirrored<Box>(12);
     expect_mirrored<Capsule>(13);
     expect_mirrored<ConvexHull>(14);
 }
 
-TEST(SphereBox, LeavesThroughTheNearestFaceWhenTheCentreIsInside) {
+TEST(SphereBox, SeparatesThroughTheNearestFaceWhenTheCentreIsInside) {
     const Manifold m = narrow::collide(Sphere{0.1f}, Box{{1, 2, 3}}, {{-0.75f, 0, 0}, {}}, 0.01f);
     ASSERT_EQ(m.count, 1);
     EXPECT_EQ(m.normal, (Vec3{-1, 0, 0}));
     EXPECT_NEAR(m.points[0].separation, -0.35f, 1e-6f);
 }
 
-TEST(SphereCylinder, MeetsTheRimBetweenSideAndCap) {
+TEST(SphereCylinder, TouchesTheRimBetweenSideAndCap) {
     const Manifold m = narrow::collide(Sphere{0.5f}, Cylinder{1, 1}, {{-1.3f, -1.4f, 0}, {}}, 0.01f);
     ASSERT_EQ(m.count, 1);
     EXPECT_NEAR(m.points[0].separation, 0, 1e-6f);

@@ -4,24 +4,25 @@
 #include <queue>
 #include <utility>
 
+#include "fase/core/no_index.hpp"
+
 namespace fase::hull {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
-/// Distances beyond this have the right sign: eight times the error that distance() may have.
-constexpr double sure = 0x1p-14;
+/// A distance of larger size has the right sign: eight times the error bound of distance().
+constexpr double max_distance_error = 0x1p-14;
 
-/// A triangle of the growing hull with the points outside it, a list through Builder::next_.
+/// A triangle of the hull under construction and its outside points, a linked list through Builder::next_.
 struct WorkFace {
     Triangle triangle;
-    std::uint32_t first_outside = none;
-    std::uint32_t farthest = none;
+    std::uint32_t first_outside = no_index;
+    std::uint32_t farthest = no_index;
     double farthest_distance = 0;
-    std::uint32_t visited = 0;  ///< the last search that came by
+    std::uint32_t visited = 0;  ///< number of the last search that visited this face
     bool alive = true;
 };
 
-/// The farthest point of a face; the queue gives the farthest of all, the older face among equals.
+/// The farthest point of a face; the queue pops the farthest of all, the older face among equals.
 struct Candidate {
     double distance;
     std::uint32_t face;
@@ -30,10 +31,10 @@ struct Candidate {
     }
 };
 
-/// An edge of the border between what a point sees and what it does not: from, to as the seen triangle has them.
-struct BorderEdge {
+/// An edge of the horizon: between a visible and a hidden triangle, in the direction of the visible one.
+struct HorizonEdge {
     std::uint32_t from, to;
-    std::uint32_t beyond;  ///< the unseen triangle
+    std::uint32_t hidden;  ///< the hidden triangle
 };
 
 class Builder {
@@ -50,15 +51,17 @@ public:
             const Candidate next = queue_.top();
             queue_.pop();
             const WorkFace& face = faces_[next.face];
-            if (face.alive && face.farthest != none && face.farthest_distance == next.distance) grow(next.face);
+            if (face.alive && face.farthest != no_index && face.farthest_distance == next.distance) {
+                add_farthest_point(next.face);
+            }
         }
-        hull.triangles = living_triangles();
+        hull.triangles = remaining_triangles();
         return hull;
     }
 
 private:
-    /// Four points that span much: the two ends of the longest axis, the farthest from their line, the farthest from
-    /// the plane. Returns the dimension.
+    /// Finds four points of a large tetrahedron: the two ends of the longest axis, the farthest from their line, the
+    /// farthest from the plane. Returns the dimension.
     int find_start(std::array<std::uint32_t, 4>& start) const {
         if (points_.empty()) return 0;
         std::array<std::uint32_t, 3> lo{}, hi{};
@@ -79,7 +82,7 @@ private:
             start[0] = lo[axis];
             start[1] = hi[axis];
         }
-        if (!(std::sqrt(longest) >= options_.thinnest)) return 0;
+        if (!(std::sqrt(longest) >= options_.min_thickness)) return 0;
 
         const Vec3d along = difference(start[1], start[0]) * (1 / std::sqrt(longest));
         double widest = 0;
@@ -89,7 +92,7 @@ private:
             widest = square;
             start[2] = i;
         }
-        if (!(std::sqrt(widest) >= options_.thinnest)) return 1;
+        if (!(std::sqrt(widest) >= options_.min_thickness)) return 1;
 
         const GridPlane plane(points_[start[0]], points_[start[1]], points_[start[2]]);
         double lowest = 0, highest = 0;
@@ -104,9 +107,9 @@ private:
                 top = i;
             }
         }
-        if (!(highest - lowest >= options_.thinnest)) return 2;
+        if (!(highest - lowest >= options_.min_thickness)) return 2;
         start[3] = highest >= -lowest ? top : bottom;
-        if (highest >= -lowest) std::swap(start[1], start[2]);  // the fourth point lies below the first three
+        if (highest >= -lowest) std::swap(start[1], start[2]);  // now the fourth point is below the first three
         return 3;
     }
 
@@ -133,44 +136,44 @@ private:
         faces_[2].triangle.neighbour = {1, 3, 0};
         faces_[3].triangle.neighbour = {2, 1, 0};
         vertices_ = 4;
-        next_.assign(points_.size(), none);
+        next_.assign(points_.size(), no_index);
         uses_.assign(points_.size(), 0);
-        face_from_.assign(points_.size(), none);
+        face_from_.assign(points_.size(), no_index);
         for (const std::uint32_t i : s) uses_[i] = 3;
         for (std::uint32_t i = 0; i < points_.size(); ++i) {
-            if (uses_[i] == 0) place(i, 0, 4);
+            if (uses_[i] == 0) assign_to_face(i, 0, 4);
         }
         for (std::uint32_t f = 0; f < 4; ++f) enqueue(f);
     }
 
-    /// Adds the farthest point of `seed`: what it sees goes, a fan from it to the border comes.
-    void grow(std::uint32_t seed) {
+    /// Adds the farthest point of `seed`: replaces the triangles that it sees by a fan from it to the horizon.
+    void add_farthest_point(std::uint32_t seed) {
         const std::uint32_t apex = faces_[seed].farthest;
-        find_seen(seed, points_[apex]);
+        find_visible(seed, points_[apex]);
         orphans_.clear();
-        for (const std::uint32_t f : seen_) {
+        for (const std::uint32_t f : visible_) {
             WorkFace& face = faces_[f];
             face.alive = false;
             for (const std::uint32_t corner : face.triangle.corner) {
                 if (--uses_[corner] == 0) --vertices_;
             }
-            for (std::uint32_t p = face.first_outside; p != none; p = next_[p]) {
+            for (std::uint32_t p = face.first_outside; p != no_index; p = next_[p]) {
                 if (p != apex) orphans_.push_back(p);
             }
         }
         const auto first_new = static_cast<std::uint32_t>(faces_.size());
-        for (const BorderEdge& edge : border_) {
+        for (const HorizonEdge& edge : horizon_) {
             const std::uint32_t f = add_face(edge.from, edge.to, apex);
-            faces_[f].triangle.neighbour[0] = edge.beyond;
-            Triangle& beyond = faces_[edge.beyond].triangle;
+            faces_[f].triangle.neighbour[0] = edge.hidden;
+            Triangle& hidden = faces_[edge.hidden].triangle;
             for (std::size_t k = 0; k < 3; ++k) {
-                if (beyond.corner[k] == edge.to) beyond.neighbour[k] = f;
+                if (hidden.corner[k] == edge.to) hidden.neighbour[k] = f;
             }
             face_from_[edge.from] = f;
-            if (uses_[edge.from] == 0) ++vertices_;  // all of its triangles were seen but it stands on the border
+            if (uses_[edge.from] == 0) ++vertices_;  // all of its triangles were visible, but it is on the horizon
             uses_[edge.from] += 2;
         }
-        uses_[apex] = static_cast<std::uint32_t>(border_.size());
+        uses_[apex] = static_cast<std::uint32_t>(horizon_.size());
         ++vertices_;
         for (std::uint32_t f = first_new; f < faces_.size(); ++f) {
             const std::uint32_t following = face_from_[faces_[f].triangle.corner[1]];
@@ -178,45 +181,46 @@ private:
             faces_[following].triangle.neighbour[2] = f;
         }
         const auto end = static_cast<std::uint32_t>(faces_.size());
-        for (const std::uint32_t p : orphans_) place(p, first_new, end);
+        for (const std::uint32_t p : orphans_) assign_to_face(p, first_new, end);
         for (std::uint32_t f = first_new; f < end; ++f) enqueue(f);
     }
 
     [[nodiscard]] static bool is_above(double distance, GridPoint p, const GridPlane& plane) {
-        return distance > sure || (distance >= -sure && plane.side(p) > 0);
+        return distance > max_distance_error || (distance >= -max_distance_error && plane.side(p) > 0);
     }
     [[nodiscard]] static bool sees(GridPoint p, const GridPlane& plane) {
         return is_above(plane.distance(p), p, plane);
     }
 
-    /// Fills seen_ with the triangles that `p` sees, from `seed` on, and border_ with the edges around them. The seen
-    /// triangles are connected and their border is one simple loop, because every decision is exact.
-    void find_seen(std::uint32_t seed, GridPoint p) {
+    /// Fills visible_ with the triangles that are visible from `p`, starting at `seed`, and horizon_ with the edges
+    /// around them. The visible triangles are connected and the horizon is one simple loop, because every decision is
+    /// exact.
+    void find_visible(std::uint32_t seed, GridPoint p) {
         ++search_;
-        seen_.assign(1, seed);
-        border_.clear();
+        visible_.assign(1, seed);
+        horizon_.clear();
         faces_[seed].visited = search_;
-        for (std::size_t i = 0; i < seen_.size(); ++i) {
-            const Triangle& triangle = faces_[seen_[i]].triangle;
+        for (std::size_t i = 0; i < visible_.size(); ++i) {
+            const Triangle& triangle = faces_[visible_[i]].triangle;
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t across = triangle.neighbour[k];
                 if (faces_[across].visited == search_) continue;
                 if (sees(p, faces_[across].triangle.plane)) {
                     faces_[across].visited = search_;
-                    seen_.push_back(across);
+                    visible_.push_back(across);
                 } else {
-                    border_.push_back({triangle.corner[k], triangle.corner[(k + 1) % 3], across});
+                    horizon_.push_back({triangle.corner[k], triangle.corner[(k + 1) % 3], across});
                 }
             }
         }
     }
 
-    /// Gives a point to the face of [begin, end) that it is farthest above; a point above none is inside and dropped.
-    /// That the faces made last are enough: a point that sees a triangle on either side of a border edge sees the new
-    /// one there.
-    void place(std::uint32_t point, std::uint32_t begin, std::uint32_t end) {
+    /// Assigns a point to the face of [begin, end) that it is farthest above; drops a point above none of them: it is
+    /// inside. The newest faces are sufficient: a point that sees a triangle on either side of a horizon edge sees the
+    /// new triangle there.
+    void assign_to_face(std::uint32_t point, std::uint32_t begin, std::uint32_t end) {
         const GridPoint p = points_[point];
-        std::uint32_t best = none;
+        std::uint32_t best = no_index;
         double distance = -1;
         for (std::uint32_t f = begin; f < end; ++f) {
             const double d = faces_[f].triangle.plane.distance(p);
@@ -224,23 +228,23 @@ private:
             distance = d;
             best = f;
         }
-        if (best == none) return;
+        if (best == no_index) return;
         WorkFace& face = faces_[best];
         next_[point] = face.first_outside;
         face.first_outside = point;
-        if (face.farthest == none || distance > face.farthest_distance) {
+        if (face.farthest == no_index || distance > face.farthest_distance) {
             face.farthest_distance = distance;
             face.farthest = point;
         }
     }
 
     void enqueue(std::uint32_t f) {
-        if (faces_[f].farthest != none) queue_.push({faces_[f].farthest_distance, f});
+        if (faces_[f].farthest != no_index) queue_.push({faces_[f].farthest_distance, f});
     }
 
-    /// The faces that are left, renumbered in the order they were made.
-    [[nodiscard]] std::vector<Triangle> living_triangles() const {
-        std::vector<std::uint32_t> number(faces_.size(), none);
+    /// Returns the remaining faces, renumbered in creation order.
+    [[nodiscard]] std::vector<Triangle> remaining_triangles() const {
+        std::vector<std::uint32_t> number(faces_.size(), no_index);
         std::uint32_t count = 0;
         for (std::size_t f = 0; f < faces_.size(); ++f) {
             if (faces_[f].alive) number[f] = count++;
@@ -259,11 +263,11 @@ private:
     GridHullOptions options_;
     std::vector<WorkFace> faces_;
     std::priority_queue<Candidate> queue_;
-    std::vector<std::uint32_t> next_;       ///< per point: the next outside the same face
-    std::vector<std::uint32_t> uses_;       ///< per point: living triangles that have it as corner
-    std::vector<std::uint32_t> face_from_;  ///< per point: the newest fan triangle whose border edge starts there
-    std::vector<std::uint32_t> seen_, orphans_;
-    std::vector<BorderEdge> border_;
+    std::vector<std::uint32_t> next_;       ///< per point: the next point outside the same face
+    std::vector<std::uint32_t> uses_;       ///< per point: number of current triangles with this corner
+    std::vector<std::uint32_t> face_from_;  ///< per point: the newest fan triangle whose horizon edge starts there
+    std::vector<std::uint32_t> visible_, orphans_;
+    std::vector<HorizonEdge> horizon_;
     std::uint32_t vertices_ = 0;
     std::uint32_t search_ = 0;
 };

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fase/core/no_index.hpp"
+
 namespace fase::hull {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
-
-bool lies_in(const GridPlane& plane, GridPoint p, double tolerance) {
+bool is_in_plane(const GridPlane& plane, GridPoint p, double tolerance) {
     const double d = plane.distance(p);
     return tolerance > 0 ? d <= tolerance && d >= -tolerance : plane.side(p) == 0;
 }
 
-/// The number of the face that each triangle belongs to.
+/// Returns the face number of each triangle.
 std::vector<std::uint32_t> face_of_triangles(std::span<const GridPoint> points, std::span<const Triangle> triangles,
                                              double tolerance) {
     std::vector<std::uint32_t> order(triangles.size());
@@ -22,16 +22,16 @@ std::vector<std::uint32_t> face_of_triangles(std::span<const GridPoint> points, 
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return triangles[a].plane.twice_area() > triangles[b].plane.twice_area();
     });
-    std::vector<std::uint32_t> face_of(triangles.size(), none);
+    std::vector<std::uint32_t> face_of(triangles.size(), no_index);
     std::vector<std::uint32_t> stack;
     std::uint32_t faces = 0;
     for (const std::uint32_t seed : order) {
-        if (face_of[seed] != none) continue;
+        if (face_of[seed] != no_index) continue;
         const GridPlane& plane = triangles[seed].plane;
         const auto belongs = [&](const Triangle& t) {
             return dot(t.plane.normal(), plane.normal()) > 0 &&
                    std::all_of(t.corner.begin(), t.corner.end(),
-                               [&](std::uint32_t corner) { return lies_in(plane, points[corner], tolerance); });
+                               [&](std::uint32_t corner) { return is_in_plane(plane, points[corner], tolerance); });
         };
         face_of[seed] = faces;
         stack.assign(1, seed);
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> face_of_triangles(std::span<const GridPoint> points, 
             const std::uint32_t t = stack.back();
             stack.pop_back();
             for (const std::uint32_t across : triangles[t].neighbour) {
-                if (face_of[across] != none || !belongs(triangles[across])) continue;
+                if (face_of[across] != no_index || !belongs(triangles[across])) continue;
                 face_of[across] = faces;
                 stack.push_back(across);
             }
@@ -49,18 +49,19 @@ std::vector<std::uint32_t> face_of_triangles(std::span<const GridPoint> points, 
     return face_of;
 }
 
-/// A corner of a face, or an edge of its border.
+/// A corner of a face.
 struct Corner {
     std::uint32_t vertex, face;
     friend auto operator<=>(Corner, Corner) = default;
 };
+/// An edge of the border of a face.
 struct BorderEdge {
     std::uint32_t face, from, to;
     friend auto operator<=>(BorderEdge, BorderEdge) = default;
 };
 
-/// Sorts the vertices into those where three faces meet and the rest.
-void sort_vertices(std::span<const Triangle> triangles, std::span<const std::uint32_t> face_of, MergedFaces& merged) {
+/// Finds the vertices of three faces or more, and whether there are others.
+void find_vertices(std::span<const Triangle> triangles, std::span<const std::uint32_t> face_of, MergedFaces& merged) {
     std::vector<Corner> corners;
     corners.reserve(3 * triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -74,30 +75,30 @@ void sort_vertices(std::span<const Triangle> triangles, std::span<const std::uin
         if (end - i >= 3) {
             merged.vertices.push_back(corners[i].vertex);
         } else {
-            merged.superfluous = true;
+            merged.redundant = true;
         }
         i = end;
     }
 }
 
-/// Walks along the border of the face whose edges are `edges`, sorted by `from`. Empty unless it is one simple loop.
-std::vector<std::uint32_t> walk(std::span<const BorderEdge> edges) {
+/// Links the border edges of a face, sorted by `from`, to a loop. Returns an empty loop unless it is one simple loop.
+std::vector<std::uint32_t> link_loop(std::span<const BorderEdge> edges) {
     std::vector<std::uint32_t> loop;
-    std::uint32_t at = edges[0].from;
+    std::uint32_t vertex = edges[0].from;
     do {
-        const auto edge = std::lower_bound(edges.begin(), edges.end(), at,
+        const auto edge = std::lower_bound(edges.begin(), edges.end(), vertex,
                                            [](const BorderEdge& e, std::uint32_t v) { return e.from < v; });
-        if (edge == edges.end() || edge->from != at || loop.size() == edges.size()) return {};
-        loop.push_back(at);
-        at = edge->to;
-    } while (at != edges[0].from);
+        if (edge == edges.end() || edge->from != vertex || loop.size() == edges.size()) return {};
+        loop.push_back(vertex);
+        vertex = edge->to;
+    } while (vertex != edges[0].from);
     return loop.size() == edges.size() && loop.size() >= 3 ? loop : std::vector<std::uint32_t>{};
 }
 
 Vec3d position(GridPoint p) { return {double(p.x), double(p.y), double(p.z)}; }
 
-/// Whether the corners of the loop turn left, seen from outside, but for `tolerance` grid steps.
-bool turns_left(std::span<const GridPoint> points, std::span<const std::uint32_t> loop, double tolerance) {
+/// Whether the loop is convex and counter-clockwise seen from outside, within `tolerance` grid steps.
+bool is_convex(std::span<const GridPoint> points, std::span<const std::uint32_t> loop, double tolerance) {
     const Vec3d normal = plane_of(points, loop).normal;
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec3d from = position(points[loop[i]]);
@@ -110,8 +111,9 @@ bool turns_left(std::span<const GridPoint> points, std::span<const std::uint32_t
     return true;
 }
 
-void walk_borders(std::span<const GridPoint> points, std::span<const Triangle> triangles,
-                  std::span<const std::uint32_t> face_of, double tolerance, MergedFaces& merged) {
+/// Fills merged.loops with the borders of the faces.
+void find_loops(std::span<const GridPoint> points, std::span<const Triangle> triangles,
+                std::span<const std::uint32_t> face_of, double tolerance, MergedFaces& merged) {
     std::vector<BorderEdge> edges;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -123,9 +125,9 @@ void walk_borders(std::span<const GridPoint> points, std::span<const Triangle> t
     for (std::size_t i = 0; i < edges.size();) {
         std::size_t end = i;
         while (end < edges.size() && edges[end].face == edges[i].face) ++end;
-        merged.loops.push_back(walk(std::span(edges).subspan(i, end - i)));
+        merged.loops.push_back(link_loop(std::span(edges).subspan(i, end - i)));
         const std::vector<std::uint32_t>& loop = merged.loops.back();
-        if (loop.empty() || (tolerance > 0 && !turns_left(points, loop, 2 * tolerance))) merged.sound = false;
+        if (loop.empty() || (tolerance > 0 && !is_convex(points, loop, 2 * tolerance))) merged.valid = false;
         i = end;
     }
     std::sort(merged.loops.begin(), merged.loops.end());
@@ -138,19 +140,19 @@ FacePlane plane_of(std::span<const GridPoint> points, std::span<const std::uint3
     const Vec3d start = position(points[loop[0]]);
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec3d a = position(points[loop[i]]) - start;
-        plane.at += a;
+        plane.centroid += a;
         plane.normal += cross(a, position(points[loop[(i + 1) % loop.size()]]) - start);
     }
     plane.normal = normalized(plane.normal);
-    plane.at = start + plane.at * (1 / double(loop.size()));
+    plane.centroid = start + plane.centroid * (1 / double(loop.size()));
     return plane;
 }
 
 MergedFaces merge_coplanar(std::span<const GridPoint> points, std::span<const Triangle> triangles, double tolerance) {
     MergedFaces merged;
     const std::vector<std::uint32_t> face_of = face_of_triangles(points, triangles, tolerance);
-    sort_vertices(triangles, face_of, merged);
-    if (!merged.superfluous) walk_borders(points, triangles, face_of, tolerance, merged);
+    find_vertices(triangles, face_of, merged);
+    if (!merged.redundant) find_loops(points, triangles, face_of, tolerance, merged);
     return merged;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// From triangles to flat faces: merges what is coplanar and drops the vertices that no longer matter.
+/// Merges coplanar triangles of a hull into faces and drops redundant vertices.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,28 +8,28 @@
 
 namespace fase::hull {
 
-/// Faces of many corners, or the vertices to start again from.
+/// Polygonal faces, or the vertices for another run of quickhull().
 struct MergedFaces {
     /// Corner indices of each face, counter-clockwise from outside, the smallest first; sorted. Filled only when
-    /// `superfluous` is false.
+    /// `redundant` is false.
     std::vector<std::vector<std::uint32_t>> loops;
-    std::vector<std::uint32_t> vertices;  ///< those that three faces or more meet at, ascending
-    bool superfluous = false;             ///< some vertex lies inside a face or an edge: the hull of `vertices` is due
-    bool sound = true;                    ///< the border of every face is one simple loop that turns left all round
+    std::vector<std::uint32_t> vertices;  ///< vertices of three faces or more, ascending
+    bool redundant = false;               ///< some vertex is inside a face or an edge: compute the hull of `vertices`
+    bool valid = true;                    ///< the border of every face is one simple, convex loop
 };
 
-/// A plane in double through the middle of a face: its unit normal (by Newell's sum) and one of its points.
+/// The plane of a face in double: its unit normal (Newell's method) and its centroid.
 struct FacePlane {
-    Vec3d normal, at;
-    /// Grid steps above the plane.
+    Vec3d normal, centroid;
+    /// Returns the distance above the plane in grid steps.
     [[nodiscard]] double distance(GridPoint p) const {
-        return dot(normal, Vec3d{double(p.x), double(p.y), double(p.z)} - at);
+        return dot(normal, Vec3d{double(p.x), double(p.y), double(p.z)} - centroid);
     }
 };
 [[nodiscard]] FacePlane plane_of(std::span<const GridPoint> points, std::span<const std::uint32_t> loop);
 
-/// Joins triangles that lie within `tolerance` grid steps of one plane; largest triangle first. At 0 only those exactly
-/// in one plane, and then every face is flat, convex and simple. O(n log n).
+/// Merges triangles within `tolerance` grid steps of one plane, largest triangle first. At 0 it merges exactly coplanar
+/// triangles only, and every face is flat, convex and simple. O(n log n).
 MergedFaces merge_coplanar(std::span<const GridPoint> points, std::span<const Triangle> triangles, double tolerance);
 
 }  // namespace fase::hull

@@ -1,9 +1,10 @@
 #pragma once
-/// The round cylinder.
+/// The cylinder shape.
+#include <array>
 #include <cmath>
 #include <string_view>
 
-#include "fase/math/vec3.hpp"
+#include "fase/geometry/shape_description.hpp"
 
 namespace fase {
 
@@ -12,9 +13,11 @@ struct Cylinder {
     static constexpr std::string_view name = "cylinder";
     float radius = 0.5f;       ///< metres, above 0
     float half_height = 0.5f;  ///< metres, above 0
+    static constexpr std::array sizes{ShapeSize{"radius", &Cylinder::radius},
+                                      ShapeSize{"half_height", &Cylinder::half_height}};
     friend constexpr bool operator==(const Cylinder&, const Cylinder&) = default;
 
-    /// Farthest point in `direction`, on a rim (on the axis when the direction has no sideways part).
+    /// Returns the farthest point in `direction`: on a rim, or on the axis when `direction` is parallel to it.
     template <class T> [[nodiscard]] Vec3Of<T> core_support(Vec3Of<T> direction) const {
         const T sideways = std::sqrt(direction.x * direction.x + direction.z * direction.z);
         const T scale = sideways > 0 ? T(radius) / sideways : T(0);
@@ -22,5 +25,14 @@ struct Cylinder {
     }
     [[nodiscard]] constexpr float core_radius() const { return 0; }
 };
+
+namespace detail {  // defined in cylinder.cpp; shape_functions.hpp describes them
+[[nodiscard]] Aabb bounds_of(const Cylinder& cylinder, const Pose& pose);
+[[nodiscard]] float outer_radius_of(const Cylinder& cylinder);
+[[nodiscard]] float inner_radius_of(const Cylinder& cylinder);
+[[nodiscard]] Solid solid_of(const Cylinder& cylinder, double density);
+[[nodiscard]] TriangleMesh mesh_of(const Cylinder& cylinder, int segments);
+[[nodiscard]] Result<RotatedShape> image_of(const Cylinder& cylinder, const LinearMap& map);
+}  // namespace detail
 
 }  // namespace fase

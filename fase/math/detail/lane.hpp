@@ -1,12 +1,12 @@
 #pragma once
-/// One float with the interface of the SIMD lanes: the clear version that judges the wide ones.
+/// One float with the interface of a SIMD vector: the scalar reference for the SIMD code.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 namespace fase {
 
-/// A single lane. Each operation gives the bits that any lane of a wide vector gives.
+/// A single lane. Each operation gives the same bits as a lane of a SIMD vector.
 struct Lane {
     static constexpr int lanes = 1;
     float v;

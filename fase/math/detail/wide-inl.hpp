@@ -1,4 +1,4 @@
-/// SIMD lanes: the one place that knows Highway. Included once for each target inside its namespace (see
+/// SIMD vectors of floats on Highway. Included once for each target inside its namespace (see
 /// dynamics/solver/contact_passes.cpp), so no #pragma once.
 #if defined(FASE_MATH_WIDE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef FASE_MATH_WIDE_INL_HPP
@@ -19,10 +19,10 @@ namespace fase::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
-using Wide = fase::Lane;  // a processor without SIMD that Highway knows
+using Wide = fase::Lane;  // no SIMD target for this processor
 #else
-/// Four or eight floats that are computed at once; add, subtract, multiply, divide and sqrt round as scalars do and
-/// nothing is fused, so every width gives the same bits.
+/// A SIMD vector of four or eight floats. Add, subtract, multiply, divide and sqrt round as scalars do, and no
+/// operation is fused, so every width gives the same bits.
 struct Wide {
     using Tag = hn::CappedTag<float, 8>;
     static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
@@ -37,13 +37,13 @@ struct Wide {
     friend HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.v, b.v)}; }
     friend HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.v, b.v)}; }
     friend HWY_INLINE Wide sqrt_of(Wide a) { return {hn::Sqrt(a.v)}; }
-    /// a > b ? x : y, lane by lane; false for NaN.
+    /// a > b ? x : y for each lane; a NaN compares false.
     friend HWY_INLINE Wide select_greater(Wide a, Wide b, Wide x, Wide y) {
         return {hn::IfThenElse(hn::Gt(a.v, b.v), x.v, y.v)};
     }
 
-    /// Reads 8 floats from each of `lanes` rows and turns them, so that out[k] holds float k of every row. Rows are 16
-    /// bytes aligned; `stride` is in floats.
+    /// Loads 8 floats from each of `lanes` rows and transposes them: out[k] holds float k of every row. Rows are
+    /// aligned to 16 bytes; `stride` is in floats.
     static HWY_INLINE void gather8(const float* base, const std::uint32_t* rows, std::size_t stride, Wide* out) {
         const Tag d;
         hn::Vec<Tag> z[8];
@@ -65,7 +65,7 @@ struct Wide {
             for (int i = 0; i < 8; ++i) out[i].v = z[i];
         }
     }
-    /// The reverse of gather8(): all rows must differ, but for rows that nobody reads.
+    /// The inverse of gather8(). All rows must differ, except rows that are never read.
     static HWY_INLINE void scatter8(float* base, const std::uint32_t* rows, std::size_t stride, const Wide* in) {
         const Tag d;
         hn::Vec<Tag> z[8];
@@ -89,7 +89,7 @@ struct Wide {
     }
 
 private:
-    /// Four rows of four lanes, within each 128-bit part.
+    /// Transposes four rows of four lanes within each 128-bit block.
     static HWY_INLINE void transpose4(hn::Vec<Tag>* z) {
         const Tag d;
         const hn::Repartition<double, Tag> dd;

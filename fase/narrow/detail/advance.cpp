@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The gap between two shapes that are not thought to overlap: 0 or less when they do, without a normal then.
+/// Returns the gap between two shapes that are expected to be apart; 0 or less and no normal when they overlap.
 Distance gap_between(const Shape& target, const Shape& mover, const TransformD& mover_in_target) {
     return std::visit(
         [&]<class A, class B>(const A& a, const B& b) -> Distance {
@@ -45,38 +45,38 @@ std::optional<Advance> advance(const Shape& target, const Shape& mover, const Tr
                                double length) {
     constexpr int max_rounds = 128;
     const double tolerance = advance_tolerance(target, mover);
-    // Beyond this the shapes are past each other: it keeps all numbers within reason.
+    // Beyond this the shapes have passed each other: limits the size of all numbers.
     const double past = fase::length(start.position) + double(outer_radius(target)) + double(outer_radius(mover));
-    const double farthest = std::min({length, past * (1 + 1e-3), 1e30});
+    const double max_distance = std::min({length, past * (1 + 1e-3), 1e30});
     Distance gap = signed_distance(target, mover, start);
     if (!(gap.distance > 0)) return Advance{0, gap.normal, gap.on_a, true};
-    TransformD there = start;
-    double at = 0;
+    TransformD pose = start;
+    double distance = 0;
     for (int round = 0; round < max_rounds; ++round) {
         const double approach = -dot(direction, gap.normal);
         if (!(approach > 0)) return std::nullopt;
         const double step = gap.distance / approach;
         if (gap.distance <= tolerance) {
-            // What is left goes too, where it is no more than a gap of that kind: a plane still parts the shapes there.
-            at = std::min(at + std::min(step, 10 * tolerance), farthest);
-            return Advance{at, gap.normal, gap.on_a};
+            // Also moves through the rest if it is as small as the tolerance: a plane still separates the shapes there.
+            distance = std::min(distance + std::min(step, 10 * tolerance), max_distance);
+            return Advance{distance, gap.normal, gap.on_a};
         }
-        double next = at + step;
-        if (!(next <= farthest)) {
-            if (at >= farthest || !((next - farthest) * approach <= tolerance)) return std::nullopt;
-            next = farthest;
+        double next = distance + step;
+        if (!(next <= max_distance)) {
+            if (distance >= max_distance || !((next - max_distance) * approach <= tolerance)) return std::nullopt;
+            next = max_distance;
         }
-        const bool stuck = next <= at;  // the step is below the roundings of the way
-        at = next;
-        there.position = start.position + direction * at;
+        const bool stuck = next <= distance;  // the step is below the rounding error of the distance
+        distance = next;
+        pose.position = start.position + direction * distance;
         const Vec3d normal = gap.normal;
-        gap = gap_between(target, mover, there);
-        // Right at the touch the normal of the plane that led here is better than that of a gap of some roundings.
-        const bool shows_normal = gap.distance > 1e-3 * tolerance;
-        if (!shows_normal) gap.normal = normal;
-        if (stuck || !shows_normal) return Advance{at, gap.normal, gap.on_a};
+        gap = gap_between(target, mover, pose);
+        // At the touch the normal of the last separating plane is better than that of a gap of a few roundings.
+        const bool has_normal = gap.distance > 1e-3 * tolerance;
+        if (!has_normal) gap.normal = normal;
+        if (stuck || !has_normal) return Advance{distance, gap.normal, gap.on_a};
     }
-    return Advance{at, gap.normal, gap.on_a};
+    return Advance{distance, gap.normal, gap.on_a};
 }
 
 }  // namespace fase::narrow

@@ -9,19 +9,19 @@ constexpr std::uint32_t id_mask = 0x3FFF, side_flag = 0x4000, no_second = 0x7FFF
 std::uint32_t name_of_corner(std::uint32_t id) { return (id & id_mask) << 15 | no_second; }
 std::uint32_t name_of_cut(std::uint32_t edge, std::uint32_t side) { return edge << 15 | side; }
 
-/// The point of the line from p to q at `share`.
-ClipPoint between(const ClipPoint& p, const ClipPoint& q, double share) {
+/// Interpolates from p (fraction 0) to q (1).
+ClipPoint interpolate(const ClipPoint& p, const ClipPoint& q, double fraction) {
     ClipPoint cut;
-    cut.u = p.u + (q.u - p.u) * share;
-    cut.v = p.v + (q.v - p.v) * share;
-    cut.height = p.height + (q.height - p.height) * share;
+    cut.u = p.u + (q.u - p.u) * fraction;
+    cut.v = p.v + (q.v - p.v) * fraction;
+    cut.height = p.height + (q.height - p.height) * fraction;
     return cut;
 }
 
 }  // namespace
 
 ClipFrame::ClipFrame(const Feature& reference)
-    : origin_(reference.corners[0].at), u_(any_perpendicular(reference.normal)), normal_(reference.normal) {
+    : origin_(reference.corners[0].position), u_(any_perpendicular(reference.normal)), normal_(reference.normal) {
     v_ = cross(normal_, u_);
     double size = 0;
     const auto count = static_cast<std::size_t>(reference.count);
@@ -43,7 +43,7 @@ ClipFrame::ClipFrame(const Feature& reference)
 }
 
 ClipPoint ClipFrame::flatten(const Corner& corner) const {
-    const Vec3d p = corner.at - origin_;
+    const Vec3d p = corner.position - origin_;
     ClipPoint point;
     point.u = dot(u_, p);
     point.v = dot(v_, p);
@@ -78,29 +78,29 @@ ClipPolygon ClipFrame::clip(const Feature& incident) const {
 
 void ClipFrame::clip_polygon(ClipPolygon& polygon) const {
     ClipPolygon other;
-    ClipPolygon *whole = &polygon, *clipped = &other;
-    for (int s = 0; s < side_count_ && whole->count > 0; ++s) {
+    ClipPolygon *input = &polygon, *clipped = &other;
+    for (int s = 0; s < side_count_ && input->count > 0; ++s) {
         const Side& side = sides_[static_cast<std::size_t>(s)];
         clipped->count = 0;
         const auto put = [&](const ClipPoint& p) {
             if (clipped->count < ClipPolygon::capacity) clipped->points[static_cast<std::size_t>(clipped->count++)] = p;
         };
         bool all_in = true;
-        for (int i = 0; i < whole->count && all_in; ++i) {
-            all_in = side.beyond(whole->points[static_cast<std::size_t>(i)]) <= slack_;
+        for (int i = 0; i < input->count && all_in; ++i) {
+            all_in = side.beyond(input->points[static_cast<std::size_t>(i)]) <= slack_;
         }
         if (all_in) continue;
-        ClipPoint from = whole->points[static_cast<std::size_t>(whole->count - 1)];
+        ClipPoint from = input->points[static_cast<std::size_t>(input->count - 1)];
         double from_beyond = side.beyond(from);
-        for (int i = 0; i < whole->count; ++i) {
-            const ClipPoint to = whole->points[static_cast<std::size_t>(i)];
+        for (int i = 0; i < input->count; ++i) {
+            const ClipPoint to = input->points[static_cast<std::size_t>(i)];
             const double to_beyond = side.beyond(to);
             const bool from_out = from_beyond > slack_, to_out = to_beyond > slack_;
             if (from_out != to_out) {
-                // A corner within the slack stands for its own cut.
+                // A corner within the slack replaces its cut.
                 const bool grazes = from_out ? to_beyond >= 0 : from_beyond >= 0;
                 if (!grazes) {
-                    ClipPoint cut = between(from, to, from_beyond / (from_beyond - to_beyond));
+                    ClipPoint cut = interpolate(from, to, from_beyond / (from_beyond - to_beyond));
                     cut.name = name_of_cut(from.edge, side.id);
                     cut.edge = from_out ? from.edge : side.id;
                     put(cut);
@@ -111,12 +111,12 @@ void ClipFrame::clip_polygon(ClipPolygon& polygon) const {
             from_beyond = to_beyond;
         }
         ClipPolygon* const done = clipped;
-        clipped = whole;
-        whole = done;
+        clipped = input;
+        input = done;
     }
-    if (whole == &polygon) return;
-    polygon.count = whole->count;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(whole->count); ++i) polygon.points[i] = whole->points[i];
+    if (input == &polygon) return;
+    polygon.count = input->count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(input->count); ++i) polygon.points[i] = input->points[i];
 }
 
 void ClipFrame::clip_segment(ClipPolygon& segment) const {
@@ -125,15 +125,15 @@ void ClipFrame::clip_segment(ClipPolygon& segment) const {
         const Side& side = sides_[static_cast<std::size_t>(s)];
         ClipPoint& p = segment.points[0];
         ClipPoint& q = segment.points[1];
-        const double at_p = side.beyond(p), at_q = side.beyond(q);
-        const bool p_out = at_p > slack_, q_out = at_q > slack_;
+        const double p_beyond = side.beyond(p), q_beyond = side.beyond(q);
+        const bool p_out = p_beyond > slack_, q_out = q_beyond > slack_;
         if (p_out && q_out) {
             segment.count = 0;
             return;
         }
         if (!p_out && !q_out) continue;
-        ClipPoint cut = between(p, q, at_p / (at_p - at_q));
-        if (p_out ? at_q >= 0 : at_p >= 0) cut = p_out ? q : p;
+        ClipPoint cut = interpolate(p, q, p_beyond / (p_beyond - q_beyond));
+        if (p_out ? q_beyond >= 0 : p_beyond >= 0) cut = p_out ? q : p;
         cut.name = name_of_cut(edge, side.id);
         (p_out ? p : q) = cut;
     }

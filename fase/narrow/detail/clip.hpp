@@ -4,12 +4,11 @@
 
 namespace fase::narrow {
 
-/// A point over the reference face: (u, v) in its plane, `height` above it. `name` names the features that meet in it.
+/// A point over the reference face: (u, v) in its plane, `height` above it. `name` is the id of its feature pair.
 struct ClipPoint {
     double u = 0, v = 0, height = 0;
     std::uint32_t name = 0;
-    std::uint32_t edge =
-        0;  ///< what the side from here to the next point lies on: an incident edge or a reference side
+    std::uint32_t edge = 0;  ///< id of the side to the next point: an incident edge or a reference side
 };
 
 /// A convex polygon (or a segment, or a point) over a reference face.
@@ -19,8 +18,7 @@ struct ClipPolygon {
     int count = 0;
 };
 
-/// The plane of a reference feature with 3 corners or more: (u, v, height) is a right-handed frame, height along its
-/// normal.
+/// The frame of a reference feature with 3 corners or more: (u, v, height) is right-handed, height along its normal.
 class ClipFrame {
 public:
     explicit ClipFrame(const Feature& reference);
@@ -30,11 +28,11 @@ public:
         return origin_ + u_ * point.u + v_ * point.v + normal_ * point.height;
     }
     [[nodiscard]] Vec3d normal() const { return normal_; }
-    /// Is the point over the face, or outside by no more than rounding?
+    /// Whether the point is over the face, to rounding.
     [[nodiscard]] bool contains(const ClipPoint& point) const;
-    /// The part of the incident feature that lies over the reference face; corners within a millionth of the face's
-    /// size outside count as inside, so that flush faces keep their corners. Names follow the features, not the order.
-    /// Source: Sutherland, Hodgman 1974, Reentrant polygon clipping.
+    /// Returns the part of the incident feature over the reference face. A corner outside by up to a millionth of the
+    /// face's size counts as inside, so that flush faces keep their corners. Names depend on the features, not on the
+    /// order. Source: Sutherland, Hodgman 1974, Reentrant polygon clipping.
     [[nodiscard]] ClipPolygon clip(const Feature& incident) const;
 
 private:

@@ -7,16 +7,16 @@
 namespace fase::narrow {
 namespace {
 
-/// The axes of a box in cyclic order, so that (axis, next, after) is right-handed.
+/// Returns the next axis in cyclic order, so that (axis, next, next of next) is right-handed.
 constexpr int next_axis(int axis) { return axis == 2 ? 0 : axis + 1; }
 
-/// Corner of a box by its id: bit k set means the positive side of axis k.
+/// Returns the corner of a box by its id: bit k set means the positive side of axis k.
 Vec3d box_corner(const Box& box, std::uint32_t id) {
     return {(id & 1) ? double(box.half.x) : -double(box.half.x), (id & 2) ? double(box.half.y) : -double(box.half.y),
             (id & 4) ? double(box.half.z) : -double(box.half.z)};
 }
 
-/// Outward unit normal of a hull's face, from its corners (Newell), so that it is exact to double precision.
+/// Returns the outward unit normal of a hull's face from its corners (Newell's method), exact to double precision.
 Vec3d face_normal(const ConvexHull& hull, const ConvexHull::Face& face) {
     const Vec3d origin = to_double(hull.vertices[hull.face_vertices[face.first]]);
     Vec3d sum;
@@ -87,12 +87,12 @@ CoreEdge CoreFeatures<ConvexHull>::edge(const ConvexHull& hull, int index) {
 void CoreFeatures<ConvexHull>::feature(const ConvexHull& hull, Vec3d direction, Feature& out) {
     const Vec3 d = to_float(direction);
     std::size_t best = 0;
-    float most = 0;
+    float max_along = 0;
     for (std::size_t i = 0; i < hull.faces.size(); ++i) {
         const float along = dot(hull.faces[i].plane.normal, d);
-        if (i == 0 || along > most) {
+        if (i == 0 || along > max_along) {
             best = i;
-            most = along;
+            max_along = along;
         }
     }
     const ConvexHull::Face& face = hull.faces[best];
@@ -125,7 +125,7 @@ void CoreFeatures<Cylinder>::feature(const Cylinder& cylinder, Vec3d direction, 
     out.count = 12;
     out.normal = {0, top ? 1.0 : -1.0, 0};
     for (std::uint32_t i = 0; i < 12; ++i) {
-        const std::uint32_t k = top ? 11 - i : i;  // counter-clockwise about +y runs from x towards -z
+        const std::uint32_t k = top ? 11 - i : i;  // counter-clockwise about +y goes from x to -z
         out.corners[i] = {{r * cosine[k], top ? h : -h, r * cosine[(k + 9) % 12]}, k + (top ? 12u : 0u)};
     }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the general narrow phase asks of any convex shape, behind one table of functions a shape.
+/// The interface of a convex shape to the general narrow phase: one function table per kind of shape.
 #include <cstdint>
 
 #include "fase/geometry/shapes.hpp"
@@ -7,35 +7,35 @@
 
 namespace fase::narrow {
 
-/// A flat face of a core: the core lies where dot(normal, p) <= offset. `normal` is unit; frame of the shape.
+/// A flat face of a core: dot(normal, p) <= offset for all points of the core. `normal` is unit; frame of the shape.
 struct CoreFace {
     Vec3d normal;
     double offset = 0;
 };
 
-/// A straight edge of a core, from `from` to `from + along`, where two faces of unit normals `left` and `right` meet.
+/// A straight edge of a core, from `from` to `from + along`, between two faces of unit normals `left` and `right`.
 struct CoreEdge {
     Vec3d from, along;
     Vec3d left, right;
 };
 
-/// One corner of a Feature; `id` names it among all corners of the shape, the same from step to step (below 2^15).
+/// One corner of a Feature; `id` is unique among the corners of the shape and stable from step to step (below 2^15).
 struct Corner {
-    Vec3d at;
+    Vec3d position;
     std::uint32_t id = 0;
 };
 
-/// The part of a core's surface that lies farthest in a direction: a face (3 corners or more, counter-clockwise seen
-/// from outside), a segment (2) or a point (1). Frame of the shape.
+/// The supporting feature of a core in a direction: a face (3 corners or more, counter-clockwise seen from outside), a
+/// segment (2) or a point (1). Frame of the shape.
 struct Feature {
-    static constexpr int capacity = 64;  ///< faces with more corners are thinned evenly to this many
+    static constexpr int capacity = 64;  ///< faces with more corners are subsampled evenly to this many
     Buffer<Corner, capacity> corners;
     int count = 0;
-    Vec3d normal;          ///< unit, outward; of a face only
-    bool rounded = false;  ///< the corners only sample the rim of a face, or a line of a curved side
+    Vec3d normal;          ///< unit, outward; for a face only
+    bool rounded = false;  ///< the corners are samples of the rim of a face, or a line of a curved side
 };
 
-/// The functions of one kind of shape; `shape` is always an S of that kind.
+/// The functions of one kind of shape; `shape` always points to a shape of that kind.
 struct CoreTable {
     Vec3d (*support)(const void* shape, Vec3d direction);
     void (*feature)(const void* shape, Vec3d direction, Feature& out);
@@ -43,21 +43,21 @@ struct CoreTable {
     CoreFace (*face)(const void* shape, int index);
     int (*edge_count)(const void* shape);
     CoreEdge (*edge)(const void* shape, int index);
-    bool polyhedral;  ///< faces and edges tell all: the core is a polyhedron, a segment or a point
-    bool wire;        ///< the edges bound no faces (a segment, a cylinder's axis): CoreEdge::left and right are 0
+    bool polyhedral;  ///< faces and edges describe it completely: the core is a polyhedron, a segment or a point
+    bool wire;        ///< the edges have no faces (a segment, a cylinder's axis): CoreEdge::left and right are 0
 };
 
-/// The core of a convex shape and the radius that it is grown by. Refers to the shape; copy freely.
+/// The core of a convex shape and its radius. Refers to the shape; cheap to copy.
 struct CoreView {
     const void* shape = nullptr;
     const CoreTable* table = nullptr;
     double radius = 0;
 
-    /// Farthest point of the core in `direction` (any length), frame of the shape.
+    /// Returns the farthest point of the core in `direction` (any length), frame of the shape.
     [[nodiscard]] Vec3d support(Vec3d direction) const { return table->support(shape, direction); }
 };
 
-/// What a shape's core has besides support points. The primary template is for cores without flat parts; a shape with
+/// The faces, edges and features of a shape's core. The primary template is for cores without flat parts; a shape with
 /// faces, edges or a flat feature specialises it. Same members as CoreTable, on the shape itself.
 template <ConvexShape S> struct CoreFeatures {
     static constexpr bool polyhedral = false, wire = false;
@@ -72,7 +72,7 @@ template <ConvexShape S> struct CoreFeatures {
     }
 };
 
-/// A point: its one feature is itself.
+/// A point: its only feature is itself.
 template <> struct CoreFeatures<Sphere> {
     static constexpr bool polyhedral = true, wire = true;
     static int face_count(const Sphere&) { return 0; }
@@ -123,8 +123,8 @@ template <> struct CoreFeatures<ConvexHull> {
     static void feature(const ConvexHull& hull, Vec3d direction, Feature& out);
 };
 
-/// Two flat caps, sampled by 12 points of the rim that turn with the shape, and a line of the side. Its axis stands in
-/// as its only edge: the normals of the side are those at right angles to it.
+/// Two flat caps, sampled by 12 points of the rim that rotate with the shape, and a line of the side. Its axis is its
+/// only edge: the normals of the side are perpendicular to it.
 template <> struct CoreFeatures<Cylinder> {
     static constexpr bool polyhedral = false, wire = true;
     static int face_count(const Cylinder&) { return 2; }
@@ -138,7 +138,7 @@ template <> struct CoreFeatures<Cylinder> {
     static void feature(const Cylinder& cylinder, Vec3d direction, Feature& out);
 };
 
-/// The table of S, one for the whole program.
+/// The function table of S.
 template <ConvexShape S>
 inline constexpr CoreTable core_table{
     [](const void* s, Vec3d d) { return static_cast<const S*>(s)->core_support(d); },
@@ -150,7 +150,7 @@ inline constexpr CoreTable core_table{
     CoreFeatures<S>::polyhedral,
     CoreFeatures<S>::wire};
 
-/// The view of a shape; it refers to `shape`, which must outlive it.
+/// Returns a view of `shape`, which must outlive it.
 template <ConvexShape S> [[nodiscard]] CoreView core_view(const S& shape) {
     return {&shape, &core_table<S>, shape.core_radius()};
 }

@@ -6,7 +6,7 @@
 namespace fase::narrow {
 namespace {
 
-/// How much each corner counts in the point of a simplex that is closest to the origin, and that point.
+/// The point of a simplex closest to the origin, with its barycentric weights.
 struct Closest {
     std::array<double, 4> weight{};
     Vec3d point;
@@ -18,12 +18,10 @@ public:
     explicit ClosestPoint(const Simplex& simplex) : simplex_(simplex) {}
 
     [[nodiscard]] Closest find() const {
-        switch (simplex_.count) {
-            case 1: return vertex(0);
-            case 2: return segment(0, 1);
-            case 3: return triangle(0, 1, 2);
-            default: return tetrahedron();
-        }
+        if (simplex_.count == 1) return vertex(0);
+        if (simplex_.count == 2) return segment(0, 1);
+        if (simplex_.count == 3) return triangle(0, 1, 2);
+        return tetrahedron();
     }
 
 private:
@@ -44,17 +42,17 @@ private:
         if (!(from_p > 0) || !(squared > 0)) return vertex(i);
         if (!(from_q > 0)) return vertex(j);
         Closest result;
-        // Measured from the nearer end, so that little is lost on long segments.
+        // Measured from the nearer end, to reduce rounding errors on long segments.
         if (from_p < from_q) {
-            const double share = from_p / squared;
-            result.weight[i] = 1 - share;
-            result.weight[j] = share;
-            result.point = p + along * share;
+            const double fraction = from_p / squared;
+            result.weight[i] = 1 - fraction;
+            result.weight[j] = fraction;
+            result.point = p + along * fraction;
         } else {
-            const double share = from_q / squared;
-            result.weight[i] = share;
-            result.weight[j] = 1 - share;
-            result.point = q - along * share;
+            const double fraction = from_q / squared;
+            result.weight[i] = fraction;
+            result.weight[j] = 1 - fraction;
+            result.point = q - along * fraction;
         }
         result.squared = length_squared(result.point);
         return result;
@@ -70,7 +68,7 @@ private:
         const double squared = length_squared(normal);
         const double edges = length_squared(q - p) * length_squared(r - p);
         if (!(squared > 1e-30 * edges)) return nearer(nearer(segment(i, j), segment(i, k)), segment(j, k));
-        // The origin's foot on the plane, seen along the axis in which the triangle's shadow is largest.
+        // The projection of the origin on the plane, tested along the axis with the largest projected area.
         const Vec3d foot = normal * (dot(normal, p) / squared);
         const Vec3d size = abs(normal);
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -78,22 +76,22 @@ private:
         const auto area = [&](Vec3d s, Vec3d t) {
             return (s[u] - foot[u]) * (t[v] - foot[v]) - (s[v] - foot[v]) * (t[u] - foot[u]);
         };
-        const double whole = normal[axis];
-        const double at_p = area(q, r) / whole, at_q = area(r, p) / whole, at_r = area(p, q) / whole;
-        if (at_p > 0 && at_q > 0 && at_r > 0) {
+        const double total = normal[axis];
+        const double weight_p = area(q, r) / total, weight_q = area(r, p) / total, weight_r = area(p, q) / total;
+        if (weight_p > 0 && weight_q > 0 && weight_r > 0) {
             Closest result;
-            const double sum = at_p + at_q + at_r;
-            result.weight[i] = at_p / sum;
-            result.weight[j] = at_q / sum;
-            result.weight[k] = at_r / sum;
+            const double sum = weight_p + weight_q + weight_r;
+            result.weight[i] = weight_p / sum;
+            result.weight[j] = weight_q / sum;
+            result.weight[k] = weight_r / sum;
             result.point = foot;
             result.squared = length_squared(foot);
             return result;
         }
         Closest result;
-        if (!(at_p > 0)) result = segment(j, k);
-        if (!(at_q > 0)) result = nearer(result, segment(i, k));
-        if (!(at_r > 0)) result = nearer(result, segment(i, j));
+        if (!(weight_p > 0)) result = segment(j, k);
+        if (!(weight_q > 0)) result = nearer(result, segment(i, k));
+        if (!(weight_r > 0)) result = nearer(result, segment(i, j));
         return result;
     }
 
@@ -105,7 +103,7 @@ private:
         std::array<double, 4> weight{};
         const bool flat = !(volume * volume > 1e-28 * bound);
         if (!flat) {
-            // From corner p, not from the origin: far from it the products would lose all their digits.
+            // Relative to corner p, not to the origin: far from the origin the products would lose all their digits.
             weight[1] = -dot(p, cross(v, w)) / volume;
             weight[2] = dot(p, cross(u, w)) / volume;
             weight[3] = -dot(p, cross(u, v)) / volume;
@@ -113,7 +111,7 @@ private:
             if (weight[0] > 0 && weight[1] > 0 && weight[2] > 0 && weight[3] > 0) {
                 Closest inside;
                 const double sum = weight[0] + weight[1] + weight[2] + weight[3];
-                for (double& share : weight) share /= sum;
+                for (double& w : weight) w /= sum;
                 inside.weight = weight;
                 inside.squared = 0;
                 return inside;
@@ -130,7 +128,7 @@ private:
     const Simplex& simplex_;
 };
 
-/// Drops the corners that do not carry the closest point, and notes the weights of the others.
+/// Removes the corners of weight 0 and stores the weights of the others.
 void keep(Simplex& simplex, const Closest& closest) {
     int kept = 0;
     for (int i = 0; i < simplex.count; ++i) {
@@ -142,8 +140,8 @@ void keep(Simplex& simplex, const Closest& closest) {
     simplex.count = kept;
 }
 
-/// The point that the weights stand for, as one corner.
-SimplexCorner merged(const Simplex& simplex) {
+/// Returns the weighted sum of the corners.
+SimplexCorner weighted_sum(const Simplex& simplex) {
     SimplexCorner sum;
     for (int i = 0; i < simplex.count; ++i) {
         const SimplexCorner& corner = simplex.corners[static_cast<std::size_t>(i)];
@@ -155,21 +153,21 @@ SimplexCorner merged(const Simplex& simplex) {
     return sum;
 }
 
-/// Square of the largest length that went into a corner.
+/// Returns the square of the largest length of a corner's vectors.
 double size_squared(const SimplexCorner& corner) {
     const double a = length_squared(corner.on_a), b = length_squared(corner.on_b);
     const double difference = length_squared(corner.difference), larger = a > b ? a : b;
     return larger > difference ? larger : difference;
 }
 
-/// Where a round without visible progress began.
-struct Before {
+/// The state before an iteration without measurable progress.
+struct Previous {
     Simplex simplex;
     Vec3d v;
     double squared = 0, gap = 0;
 };
 
-bool holds(const Simplex& simplex, Vec3d difference) {
+bool has_corner(const Simplex& simplex, Vec3d difference) {
     for (int i = 0; i < simplex.count; ++i) {
         if (simplex.corners[static_cast<std::size_t>(i)].difference == difference) return true;
     }
@@ -195,37 +193,37 @@ GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, co
     simplex.count = 1;
     Vec3d v = simplex.corners[0].difference;
     double squared = length_squared(v), scale_squared = size_squared(simplex.corners[0]);
-    std::optional<Before> before;
+    std::optional<Previous> previous;
     bool stalled = false;
     for (; result.iterations < max_rounds; ++result.iterations) {
         // Within rounding of the origin.
         if (squared <= 1e-30 * scale_squared) break;
         const SimplexCorner corner = corner_along(-v);
-        const double progress = dot(v, corner.difference);  // |v| times a lower bound of the distance
-        if (progress > 0 && progress * progress > options.farther_than * options.farther_than * squared) {
+        const double bound = dot(v, corner.difference);  // |v| times a lower bound of the distance
+        if (bound > 0 && bound * bound > options.farther_than * options.farther_than * squared) {
             result.state = GjkResult::State::Farther;
-            result.distance = progress / std::sqrt(squared);
+            result.distance = bound / std::sqrt(squared);
             break;
         }
         const double size = size_squared(corner);
         if (size > scale_squared) scale_squared = size;
-        const double gap = squared - progress;
-        if (stalled && !(gap < before->gap)) {
-            simplex = before->simplex;
-            v = before->v;
-            squared = before->squared;
+        const double gap = squared - bound;
+        if (stalled && !(gap < previous->gap)) {
+            simplex = previous->simplex;
+            v = previous->v;
+            squared = previous->squared;
             break;
         }
-        if (gap <= options.tolerance * squared || holds(simplex, corner.difference)) break;
+        if (gap <= options.tolerance * squared || has_corner(simplex, corner.difference)) break;
         simplex.corners[static_cast<std::size_t>(simplex.count++)] = corner;
         const Closest closest = ClosestPoint(simplex).find();
-        // Rounding may eat the progress in length while the direction still gets better: then the gap decides.
+        // Rounding may hide the decrease of the length while the direction still improves: then compares the gap.
         constexpr double noise = 1e-14;
         stalled = !(closest.squared < squared * (1 - noise));
         if (stalled) {
             --simplex.count;
             if (!(closest.squared <= squared * (1 + noise))) break;
-            before = Before{simplex, v, squared, gap};
+            previous = Previous{simplex, v, squared, gap};
             ++simplex.count;
         }
         keep(simplex, closest);
@@ -234,7 +232,7 @@ GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, co
         if (squared == 0) break;
     }
     result.scale = std::sqrt(scale_squared);
-    const SimplexCorner closest = merged(simplex);
+    const SimplexCorner closest = weighted_sum(simplex);
     result.on_a = closest.on_a;
     result.on_b = closest.on_b;
     if (result.state == GjkResult::State::Farther) {

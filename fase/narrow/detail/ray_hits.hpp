@@ -1,34 +1,34 @@
 #pragma once
-/// Where a ray enters each kind of shape, in the shape's own frame.
+/// Ray casts against each kind of shape, in the shape's frame.
 #include <optional>
 
 #include "fase/geometry/shapes.hpp"
 
 namespace fase::narrow {
 
-/// A ray in the frame of a shape. `direction` need not be of length 1: what is `along` is counted in its lengths.
+/// A ray in the frame of a shape. `direction` need not be of length 1: distances are in multiples of its length.
 struct LocalRay {
     Vec3d origin, direction;
     double length = 0;  ///< 0 or more, may be infinite
 };
 
-/// Where a ray meets a surface.
+/// The hit of a ray on a shape, in the shape's frame.
 struct LocalHit {
-    double at = 0;        ///< along the ray: 0 to its length
-    Vec3d normal;         ///< unit, outward, in the frame of the shape; when `inside`, not set
-    bool inside = false;  ///< the ray starts in the shape or on its surface; `at` is 0
+    double distance = 0;  ///< along the ray: 0 to its length
+    Vec3d normal;         ///< unit, outward, in the frame of the shape; not set when `inside`
+    bool inside = false;  ///< the ray starts in the shape or on its surface; `distance` is 0
 };
 
-/// Where the ray enters the solid; nullopt: nowhere before its end. Shapes are closed: touching counts, to a few
-/// roundings. A new shape may bring an overload of its own; without one, cast_ray() takes the general way.
-/// For spheres and the round sides: by the point of the line that is nearest to the axis, so that nothing is lost to
-/// rays from far away (Haines, Günther, Akenine-Möller 2019, Precision improvements for ray/sphere intersection).
+/// Returns the point where the ray enters the solid; nullopt: none before its end. Shapes are closed: touching counts,
+/// to a few roundings. A new shape may add an overload; without one, cast_ray() uses the general path. Spheres and
+/// round sides use the point of the line nearest to the axis, so that rays from far away lose no precision (Haines,
+/// Günther, Akenine-Möller 2019, Precision improvements for ray/sphere intersection).
 [[nodiscard]] std::optional<LocalHit> ray_hit(const Sphere& sphere, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const Box& box, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const Capsule& capsule, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const Cylinder& cylinder, const LocalRay& ray);
-/// By the hull's planes, which are floats: within some 1e-7 of its size of the hull of its vertices. Source: Cyrus,
-/// Beck 1978, Generalized two- and three-dimensional clipping.
+/// Uses the hull's float planes: within some 1e-7 of its size of the hull of its vertices. Source: Cyrus, Beck 1978,
+/// Generalized two- and three-dimensional clipping.
 [[nodiscard]] std::optional<LocalHit> ray_hit(const ConvexHull& hull, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const HalfSpace& ground, const LocalRay& ray);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// An edge with what the Gauss map asks of it.
+/// An edge with its vector for the Gauss map test.
 struct MappedEdge {
     CoreEdge edge;
     Vec3d across;  ///< cross(right, left)
@@ -20,7 +20,7 @@ public:
     EdgePairs(const CoreView& a, const CoreView& b, const TransformD& b_in_a, double bias, Penetration& best)
         : a_(a), b_(b), b_in_a_(b_in_a), bias_(bias), best_(best) {}
 
-    /// Edges of b are read in blocks, so that nothing is allocated and each is fetched once a block.
+    /// Tests all pairs. Reads the edges of b in blocks, so that it allocates nothing and computes each edge of b once.
     void run() {
         constexpr int block = 48;
         Buffer<MappedEdge, block> edges_b;
@@ -48,7 +48,7 @@ private:
         for (int i = 0; i < size; ++i) {
             const MappedEdge& other = edges_b[static_cast<std::size_t>(i)];
             if (a_.table->wire != b_.table->wire) {
-                // The normals of a wire fill a great circle: does the arc of the other edge cross it?
+                // The normals of a wire are a great circle: tests whether the arc of the other edge crosses it.
                 const Vec3d& along = a_.table->wire ? edge.along : other.edge.along;
                 const CoreEdge& bounded = a_.table->wire ? other.edge : edge;
                 if (!(dot(bounded.left, along) * dot(bounded.right, along) < 0)) continue;
@@ -66,7 +66,7 @@ private:
                 continue;
             }
             if (wire) {
-                // Outward of the one edge that has faces.
+                // The outward direction of the edge that has faces.
                 const Vec3d outward = a_.table->wire ? -(other.edge.left + other.edge.right) : edge.left + edge.right;
                 consider(dot(normal, outward) < 0 ? -normal : normal);
                 continue;
@@ -76,7 +76,7 @@ private:
         }
     }
 
-    /// Do the arcs of edge a and of the mirrored edge b cross on the unit sphere?
+    /// Whether the arcs of edge a and of the mirrored edge b cross on the unit sphere.
     [[nodiscard]] static bool arcs_cross(const CoreEdge& a, Vec3d across_a, const MappedEdge& b) {
         const double left_b = -dot(b.edge.left, across_a), right_b = -dot(b.edge.right, across_a);
         if (!(left_b * right_b < 0)) return false;
@@ -100,7 +100,7 @@ private:
     Penetration& best_;
 };
 
-/// A normal for cores that have no volume and no crossing edges: at right angles to whatever edge there is.
+/// Returns a normal for cores without volume and crossing edges: perpendicular to an edge, if there is one.
 Vec3d any_normal(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
     Vec3d along;
     if (a.table->edge_count(a.shape) > 0) {
@@ -112,7 +112,7 @@ Vec3d any_normal(const CoreView& a, const CoreView& b, const TransformD& b_in_a)
     return length_squared(along) > 0 ? any_perpendicular(along) : Vec3d{0, 1, 0};
 }
 
-/// The best way out along a face normal of either core; depth is infinite when neither has a face.
+/// Returns the minimum penetration along a face normal of either core; depth is infinite when neither has a face.
 Penetration best_face(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
     Penetration best;
     best.depth = infinity;

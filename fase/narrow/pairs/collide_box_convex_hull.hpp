@@ -5,11 +5,11 @@
 
 namespace fase::narrow {
 
-/// As two convex hulls, the box being one of 8 vertices and 6 faces: see collide(ConvexHull, ConvexHull).
+/// Treats the box as a convex hull of 8 vertices and 6 faces: see collide(ConvexHull, ConvexHull).
 [[nodiscard]] inline Manifold collide(const Box& a, const ConvexHull& b, const LocalPose& b_in_a, float margin) {
     const BoxAsHull box(a);
     const HullContact contact = touch_hulls(box.view(), HullView(b), b_in_a, margin);
-    return contact.whole ? contact.manifold : touch_across_gap(a, b, b_in_a, margin, 3u);
+    return contact.complete ? contact.manifold : touch_across_gap(a, b, b_in_a, margin, 3u);
 }
 
 }  // namespace fase::narrow

@@ -5,9 +5,9 @@
 
 namespace fase::narrow {
 
-/// Two points, at the ends of the stretch along which both run, when the axes are within some 3° of parallel and both
-/// ends are within the margin; else one, between the closest points. Axes that cross: the normal is at right angles to
-/// both. Features: 0 the one point, 1 and 2 the lower and upper end of the stretch along a.
+/// Two points, at the ends of the interval that both share, when the axes are within some 3° of parallel and both ends
+/// are within the margin; else one, between the closest points. Axes that cross: the normal is perpendicular to both.
+/// Features: 0 the single point, 1 and 2 the lower and upper end of the interval along a.
 /// Source: Ericson 2005, Real-Time Collision Detection, 5.1.9.
 [[nodiscard]] inline Manifold collide(const Capsule& a, const Capsule& b, const LocalPose& b_in_a, float margin) {
     // Along a: (0, s, 0), |s| <= ha. Along b: centre + axis * t, |t| <= hb.
@@ -16,7 +16,7 @@ namespace fase::narrow {
     const float aligned = axis.y, off_axis = axis.x * axis.x + axis.z * axis.z;
     const float along_b = dot(centre, axis);
     constexpr float no_direction = 1e-6f;
-    // Lines all but parallel: start from the middle of the stretch that both share.
+    // Nearly parallel lines: start from the middle of the shared interval.
     float s;
     if (off_axis > no_direction) {
         s = clamp_to((centre.y - aligned * along_b) / off_axis, ha);
@@ -26,8 +26,8 @@ namespace fase::narrow {
     }
     const float t = clamp_to(s * aligned - along_b, hb);
     s = clamp_to(centre.y + aligned * t, ha);
-    const auto on_a = [](float at) { return Vec3{0, at, 0}; };
-    const auto on_b = [&](float at) { return centre + axis * at; };
+    const auto on_a = [](float along) { return Vec3{0, along, 0}; };
+    const auto on_b = [&](float along) { return centre + axis * along; };
     const Vec3 crossing = cross(Vec3{0, 1, 0}, axis);
     Vec3 sideways = off_axis > no_direction ? normalized(crossing) : any_perpendicular(Vec3{0, 1, 0});
     if (dot(sideways, centre) < 0) sideways = -sideways;
@@ -39,20 +39,13 @@ namespace fase::narrow {
     const float low = end_1 < end_2 ? end_1 : end_2, high = end_1 < end_2 ? end_2 : end_1;
     const float lo = low > -ha ? low : -ha, hi = high < ha ? high : ha;
     if (!(hi - lo > 0.05f * (a.radius + b.radius))) return manifold;
-    const auto over = [&](float at, std::uint32_t feature) {
-        const Vec3 core_b = on_b(clamp_to((at - centre.y) / aligned, hb));
-        const float distance = length(core_b - on_a(at));
-        return ManifoldPoint{on_a(at) + manifold.normal * ((a.radius + distance - b.radius) * 0.5f),
+    const auto point = [&](float along, std::uint32_t feature) {
+        const Vec3 core_b = on_b(clamp_to((along - centre.y) / aligned, hb));
+        const float distance = length(core_b - on_a(along));
+        return ManifoldPoint{on_a(along) + manifold.normal * ((a.radius + distance - b.radius) * 0.5f),
                              distance - a.radius - b.radius, feature};
     };
-    const ManifoldPoint lower = over(lo, 1), upper = over(hi, 2);
-    const float least = lower.separation < upper.separation ? lower.separation : upper.separation;
-    const bool holds_nearest =
-        least <= manifold.points[0].separation + 1e-3f * (a.radius < b.radius ? a.radius : b.radius);
-    if (!(holds_nearest && lower.separation <= margin && upper.separation <= margin)) return manifold;
-    manifold.count = 2;
-    manifold.points[0] = lower;
-    manifold.points[1] = upper;
+    use_both_ends(point(lo, 1), point(hi, 2), margin, a.radius < b.radius ? a.radius : b.radius, manifold);
     return manifold;
 }
 

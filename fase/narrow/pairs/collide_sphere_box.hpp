@@ -1,12 +1,12 @@
 #pragma once
-/// A ball and a box.
+/// A sphere and a box.
 #include "fase/geometry/shapes/box.hpp"
 #include "fase/geometry/shapes/sphere.hpp"
 #include "fase/narrow/pairs/round.hpp"
 
 namespace fase::narrow {
 
-/// One point. A centre inside the box leaves through the nearest face. The feature names the corner, edge or face.
+/// One point. A centre inside the box is pushed out of the nearest face. The feature is the corner, edge or face.
 /// Source: Arvo 1990, A simple method for box-sphere intersection testing.
 [[nodiscard]] inline Manifold collide(const Sphere& a, const Box& b, const LocalPose& b_in_a, float margin) {
     const Vec3 centre = rotate_back(b_in_a.rotation, -b_in_a.position);
@@ -19,7 +19,7 @@ namespace fase::narrow {
     const auto region = [](float x) { return x > 0 ? 2u : x < 0 ? 1u : 0u; };
     const float largest =
         b.half.x > b.half.y ? (b.half.x > b.half.z ? b.half.x : b.half.z) : (b.half.y > b.half.z ? b.half.y : b.half.z);
-    // Nearer to the surface than rounding can tell: the face decides the normal.
+    // Within rounding of the surface: the face gives the normal.
     const float noise = 1e-6f * largest;
     Vec3 from_box;
     float distance;

@@ -1,5 +1,5 @@
 #pragma once
-/// A ball and a convex hull.
+/// A sphere and a convex hull.
 #include "fase/geometry/shapes/sphere.hpp"
 #include "fase/math/pose.hpp"
 #include "fase/narrow/manifold.hpp"
@@ -7,7 +7,7 @@
 
 namespace fase::narrow {
 
-/// One point. A centre inside the hull leaves through the nearest face. The feature names face, edge or vertex.
+/// One point. A centre inside the hull is pushed out of the nearest face. The feature is the face, edge or vertex.
 [[nodiscard]] inline Manifold collide(const Sphere& a, const ConvexHull& b, const LocalPose& b_in_a, float margin) {
     const HullView hull(b);
     const Vec3 centre = rotate_back(b_in_a.rotation, -b_in_a.position);
@@ -30,7 +30,7 @@ namespace fase::narrow {
         nearest = {centre, hull.faces[face].plane.normal, height, face << 2};
     }
     Manifold manifold;
-    manifold.normal = rotate(b_in_a.rotation, -nearest.out);
+    manifold.normal = rotate(b_in_a.rotation, -nearest.normal);
     manifold.count = 1;
     manifold.points[0] = {manifold.normal * ((a.radius + nearest.distance) * 0.5f), nearest.distance - a.radius,
                           nearest.feature};

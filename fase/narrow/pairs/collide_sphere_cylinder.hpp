@@ -1,17 +1,17 @@
 #pragma once
-/// A ball and a cylinder.
+/// A sphere and a cylinder.
 #include "fase/geometry/shapes/cylinder.hpp"
 #include "fase/geometry/shapes/sphere.hpp"
 #include "fase/narrow/pairs/round.hpp"
 
 namespace fase::narrow {
 
-/// One point. A centre inside leaves through the nearer of side and cap; on the axis, the side is left along x.
-/// The feature names side (0), upper or lower cap (1, 2), upper or lower rim (3, 4).
+/// One point. A centre inside is pushed out of the nearer of side and cap; a centre on the axis leaves the side along
+/// x. The feature is the side (0), upper or lower cap (1, 2), upper or lower rim (3, 4).
 [[nodiscard]] inline Manifold collide(const Sphere& a, const Cylinder& b, const LocalPose& b_in_a, float margin) {
     const Vec3 centre = rotate_back(b_in_a.rotation, -b_in_a.position);
     const float squared_sideways = centre.x * centre.x + centre.z * centre.z;
-    // Below this the square has lost its digits.
+    // Below 1e-30 the square has lost its digits.
     const float sideways = squared_sideways > 1e-30f ? std::sqrt(squared_sideways) : 0.f;
     const float up = centre.y < 0 ? -1.f : 1.f;
     const float beyond_side = sideways - b.radius, beyond_cap = up * centre.y - b.half_height;

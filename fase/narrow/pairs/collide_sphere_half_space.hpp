@@ -1,11 +1,11 @@
 #pragma once
-/// A ball on the ground.
+/// A sphere and a half-space.
 #include "fase/geometry/shapes/sphere.hpp"
 #include "fase/narrow/pairs/ground.hpp"
 
 namespace fase::narrow {
 
-/// One point, straight down.
+/// One point, below the centre.
 [[nodiscard]] inline Manifold collide(const Sphere& a, const HalfSpace&, const LocalPose& b_in_a, float margin) {
     const Ground ground(b_in_a);
     Manifold manifold;

@@ -1,12 +1,12 @@
 #pragma once
-/// Two shapes that pass each other where no face lies over the other: one contact from their closest points.
+/// One contact from the closest points of two shapes, for corners near corners.
 #include "fase/narrow/detail/gjk.hpp"
 #include "fase/narrow/manifold.hpp"
 
 namespace fase::narrow {
 
-/// One point between the closest points of two shapes that are apart but not by more than `margin`; none when they are
-/// farther apart, or overlap. Radii count. Slow (GJK in double) and rare: for corners that pass corners.
+/// One point between the closest points of two shapes that are separated by at most `margin`, radii included; none when
+/// they are farther apart or overlap. Slow (GJK in double) and rare: for corners near corners.
 template <ConvexShape A, ConvexShape B>
 Manifold touch_across_gap(const A& a, const B& b, const LocalPose& b_in_a, float margin, std::uint32_t feature) {
     const double radius_a = a.core_radius(), radius_b = b.core_radius();

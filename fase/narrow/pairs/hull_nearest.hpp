@@ -7,21 +7,21 @@
 
 namespace fase::narrow {
 
-/// What is nearest to a point. `out` is unit and points away from the hull.
+/// The nearest point of a hull. `normal` is unit and points away from the hull.
 struct NearestOnHull {
-    Vec3 at, out;
+    Vec3 point, normal;
     float distance = 1e30f;
     std::uint32_t feature = 0;  ///< bits 0–1: 0 face, 1 edge (by the vertex it starts from), 2 vertex; then its index
 };
 
-/// The point of a face nearest to `point`, which is `height` above its plane; `noise`: distances below it are no
-/// direction.
+/// Returns the point of a face nearest to `point`, which is `height` above its plane. A vector shorter than `noise`
+/// gives no direction: the face's normal is used then.
 inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_index, Vec3 point, float height,
                                      float noise) {
     const ConvexHull::Face& face = hull.faces[face_index];
     const Vec3 normal = face.plane.normal;
     NearestOnHull best;
-    float least = 1e30f;
+    float min_squared = 1e30f;
     bool over = true;
     Vec3 from = hull.vertices[hull.corner(face, 0)];
     for (std::uint32_t k = 0; k < face.count; ++k) {
@@ -29,11 +29,11 @@ inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_in
         if (dot(cross(along, normal), point - from) > 0) {
             over = false;
             const float t = nearest_fraction(from, to, point);
-            const Vec3 at = from + along * t;
-            const float squared = length_squared(point - at);
-            if (squared < least) {
-                least = squared;
-                best.at = at;
+            const Vec3 on_edge = from + along * t;
+            const float squared = length_squared(point - on_edge);
+            if (squared < min_squared) {
+                min_squared = squared;
+                best.point = on_edge;
                 best.feature = t <= 0   ? 2u | hull.corner(face, k) << 2
                                : t >= 1 ? 2u | hull.corner(face, k + 1) << 2
                                         : 1u | hull.corner(face, k) << 2;
@@ -42,21 +42,21 @@ inline NearestOnHull nearest_on_face(const HullView& hull, std::uint32_t face_in
         from = to;
     }
     if (over) return {point - normal * height, normal, height, face_index << 2};
-    best.distance = std::sqrt(least);
-    best.out = best.distance > noise ? (point - best.at) * (1 / best.distance) : normal;
+    best.distance = std::sqrt(min_squared);
+    best.normal = best.distance > noise ? (point - best.point) * (1 / best.distance) : normal;
     return best;
 }
 
-/// The point of the hull nearest to `point`, which is outside; `face` keeps it farthest away, by `height`. Cost: one
-/// face, then a look at all vertices, which nearly always shows that nothing is nearer.
+/// Returns the point of the hull nearest to `point`, which is outside; `face` has the maximum distance from it,
+/// `height`. Cost: one face, then a test of all vertices, which nearly always proves that no other face is nearer.
 inline NearestOnHull nearest_on_hull(const HullView& hull, Vec3 point, std::uint32_t face, float height, float noise) {
     NearestOnHull best = nearest_on_face(hull, face, point, height, noise);
     if ((best.feature & 3u) == 0) return best;
     float beyond = 0;
-    const float at = dot(best.out, best.at);
+    const float level = dot(best.normal, best.point);
     for (std::uint32_t i = 0; i < hull.vertex_count; ++i) {
-        const float more = dot(best.out, hull.vertices[i]) - at;
-        beyond = more > beyond ? more : beyond;
+        const float height_of_vertex = dot(best.normal, hull.vertices[i]) - level;
+        beyond = height_of_vertex > beyond ? height_of_vertex : beyond;
     }
     if (beyond <= noise) return best;
     for (std::uint32_t i = 0; i < hull.face_count; ++i) {

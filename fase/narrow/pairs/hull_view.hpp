@@ -1,5 +1,5 @@
 #pragma once
-/// A polyhedron as the pairs with hulls read it: borrowed arrays, so that a box is a hull without being built as one.
+/// A non-owning view of a polyhedron, so that the pairs with hulls also accept a box.
 #include <array>
 #include <cstdint>
 
@@ -9,7 +9,7 @@
 
 namespace fase::narrow {
 
-/// Refers to a hull, or to a BoxAsHull; as valid as that.
+/// Refers to a hull or a BoxAsHull, which must outlive it.
 struct HullView {
     const Vec3* vertices;
     const ConvexHull::Face* faces;
@@ -27,55 +27,55 @@ struct HullView {
           edge_count(static_cast<std::uint32_t>(hull.edges.size())) {}
     HullView() = default;
 
-    /// Index of the farthest vertex in `direction`, the first of equals.
+    /// Returns the index of the farthest vertex in `direction`, the first among equals.
     [[nodiscard]] std::uint32_t support(Vec3 direction) const {
         std::uint32_t best = 0;
         float farthest = dot(direction, vertices[0]);
         for (std::uint32_t i = 1; i < vertex_count; ++i) {
-            // Selections: a branch a vertex would be mispredicted too often.
+            // Conditional moves: a branch per vertex would be mispredicted too often.
             const float along = dot(direction, vertices[i]);
             best = along > farthest ? i : best;
             farthest = along > farthest ? along : farthest;
         }
         return best;
     }
-    /// A point well inside: the mean of some vertices.
+    /// Returns an interior point: the mean of some vertices.
     [[nodiscard]] Vec3 middle() const {
         const std::uint32_t step = vertex_count > 8 ? vertex_count / 8 : 1;
         Vec3 sum;
-        float taken = 0;
-        for (std::uint32_t i = 0; i < vertex_count; i += step, taken += 1) sum += vertices[i];
-        return sum * (1 / taken);
+        float count = 0;
+        for (std::uint32_t i = 0; i < vertex_count; i += step, count += 1) sum += vertices[i];
+        return sum * (1 / count);
     }
-    /// The face whose normal points most in `direction`, the first of equals.
+    /// Returns the face whose normal has the largest component along `direction`, the first among equals.
     [[nodiscard]] std::uint32_t face_towards(Vec3 direction) const {
         std::uint32_t best = 0;
-        float most = dot(direction, faces[0].plane.normal);
+        float max_along = dot(direction, faces[0].plane.normal);
         for (std::uint32_t i = 1; i < face_count; ++i) {
             const float along = dot(direction, faces[i].plane.normal);
-            best = along > most ? i : best;
-            most = along > most ? along : most;
+            best = along > max_along ? i : best;
+            max_along = along > max_along ? along : max_along;
         }
         return best;
     }
-    /// The face whose plane lies farthest below `point`, the first of equals.
+    /// Returns the face whose plane is farthest below `point`, the first among equals.
     [[nodiscard]] std::uint32_t face_under(Vec3 point) const {
         std::uint32_t best = 0;
-        float most = signed_distance(faces[0].plane, point);
+        float max_height = signed_distance(faces[0].plane, point);
         for (std::uint32_t i = 1; i < face_count; ++i) {
             const float height = signed_distance(faces[i].plane, point);
-            best = height > most ? i : best;
-            most = height > most ? height : most;
+            best = height > max_height ? i : best;
+            max_height = height > max_height ? height : max_height;
         }
         return best;
     }
-    /// Vertex index of the face's corner k; k == count is the first again.
+    /// Returns the vertex index of the face's corner k; k == count wraps to the first corner.
     [[nodiscard]] std::uint32_t corner(const ConvexHull::Face& face, std::uint32_t k) const {
         return face_vertices[face.first + (k < face.count ? k : k - face.count)];
     }
 };
 
-/// A box's corners and planes in the form of a hull. Vertex numbers: bits 0, 1, 2 for +x, +y, +z. Faces: -x, +x, -y …
+/// A box in the representation of a hull. Vertex numbers: bits 0, 1, 2 for +x, +y, +z. Faces: -x, +x, -y …
 class BoxAsHull {
 public:
     explicit BoxAsHull(const Box& box) {

@@ -1,4 +1,4 @@
-/// Quickhull on grid points is exact: nothing sticks out, by however little.
+/// Quickhull on grid points is exact: no point is outside.
 #include "fase/geometry/detail/grid_hull.hpp"
 
 #include <gtest/gtest.h>
@@ -41,40 +41,41 @@ void expect_exact(std::span<const GridPoint> points) {
         }
     }
     const MergedFaces exact = merge_coplanar(points, hull.triangles, 0);
-    ASSERT_TRUE(exact.superfluous || exact.sound);
+    ASSERT_TRUE(exact.redundant || exact.valid);
 }
 
-std::int32_t whole(Random& random, int size) {
+std::int32_t random_int(Random& random, int size) {
     return static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(2 * size + 1))) - size;
 }
 
-TEST(Quickhull, leaves_nothing_outside_of_random_points_few_cells_apart_or_far) {
+TEST(Quickhull, leaves_no_point_outside_for_small_and_large_distances) {
     Random random(1);
     for (const int size : {1, 2, 3, 10, 1000, grid_limit}) {
         for (int round = 0; round < 100; ++round) {
             std::vector<GridPoint> points{{size, 0, 0},  {-size, 0, 0}, {0, size, 0},
                                           {0, -size, 0}, {0, 0, size},  {0, 0, -size}};
             for (int i = 0; i < 60; ++i)
-                points.push_back({whole(random, size), whole(random, size), whole(random, size)});
+                points.push_back({random_int(random, size), random_int(random, size), random_int(random, size)});
             expect_exact(points);
         }
     }
 }
 
-/// The points lie in two neighbouring planes of the lattice, a millionth of a step apart: a double does not see which.
-TEST(Quickhull, tells_planes_a_millionth_of_a_step_apart) {
+/// The points are in two neighbouring planes of the lattice, a millionth of a step apart: below the precision of
+/// double.
+TEST(Quickhull, distinguishes_planes_a_millionth_of_a_step_apart) {
     Random random(2);
     for (int round = 0; round < 200; ++round) {
         std::vector<GridPoint> points{{0, 0, 400000000}};
         for (int i = 0; i < 40; ++i) {
-            const std::int32_t u = whole(random, 100), v = whole(random, 100), layer = whole(random, 1);
+            const std::int32_t u = random_int(random, 100), v = random_int(random, 100), layer = random_int(random, 1);
             points.push_back({u * 1024 + layer, u + v * 1024, v});
         }
         expect_exact(points);
     }
 }
 
-TEST(Quickhull, names_the_dimension_of_what_is_no_solid) {
+TEST(Quickhull, reports_the_dimension_of_points_that_are_no_solid) {
     EXPECT_EQ(quickhull({}, {}).dimension, 0);
     const GridPoint one[] = {{1, 2, 3}, {1, 2, 3}};
     EXPECT_EQ(quickhull(one, {}).dimension, 0);

@@ -1,4 +1,4 @@
-/// GJK, SAT and EPA themselves: states, limits, bounds that hold, degenerate starts.
+/// GJK, SAT and EPA: states, limits, bounds, degenerate starts.
 #include "fase/narrow/detail/gjk.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ template <class F> auto with_cores(const Shape& a, const Shape& b, F&& f) {
         a, b);
 }
 
-TEST(Gjk, EndsWithinItsRoundsAndItsSimplexHoldsTheClosestPoints) {
+TEST(Gjk, TerminatesAndItsSimplexContainsTheClosestPoints) {
     Random random(1);
     for (int i = 0; i < 50000; ++i) {
         const Shape a = random_shape(random, random.below(bounded_kinds), i % 2 == 0 ? 4 : 1e5f);
@@ -50,7 +50,7 @@ TEST(Gjk, EndsWithinItsRoundsAndItsSimplexHoldsTheClosestPoints) {
     }
 }
 
-TEST(Gjk, SaysFartherOnlyWhenItIsAndGivesALowerBound) {
+TEST(Gjk, ReportsFartherOnlyWhenTrueAndGivesALowerBound) {
     Random random(2);
     int farther = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -104,15 +104,15 @@ TEST(Epa, StartsFromFlatEmptyAndTouchingSimplices) {
         TransformD x;
         x.position = at;
         const double exact = std::min(1 - std::abs(at.y), 1 - std::sqrt(at.x * at.x + at.z * at.z));
-        const Penetration way = epa(s, s, x, Simplex{}, nothing);
-        EXPECT_NEAR(way.depth, exact, 2e-2) << at.x << " " << at.y;
-        EXPECT_NEAR(length(way.normal), 1, 1e-12);
-        EXPECT_NEAR(depth_along(s, s, x, way.normal), way.depth, 1e-12);
+        const Penetration found = epa(s, s, x, Simplex{}, nothing);
+        EXPECT_NEAR(found.depth, exact, 2e-2) << at.x << " " << at.y;
+        EXPECT_NEAR(length(found.normal), 1, 1e-12);
+        EXPECT_NEAR(depth_along(s, s, x, found.normal), found.depth, 1e-12);
         EXPECT_NEAR(epa(s, s, x, Simplex{}, sat(s, s, x)).depth, exact, 1e-4);
     }
 }
 
-TEST(Epa, ReportsTheLimitInsteadOfRunningOn) {
+TEST(Epa, StopsAtTheWorkLimitAndReportsIt) {
     const Cylinder a{1, 0.9f}, b{0.7f, 1};
     TransformD x;
     x.rotation = to_matrix(rotation_about(normalized(Vec3d{1, 2, 3}), 1.0));
@@ -122,15 +122,15 @@ TEST(Epa, ReportsTheLimitInsteadOfRunningOn) {
     Penetration nothing;
     nothing.depth = std::numeric_limits<double>::infinity();
     const CoreView s = core_view(a), t = core_view(b);
-    const Penetration way = epa(s, t, x, Simplex{}, nothing, options);
-    EXPECT_EQ(way.state, Penetration::State::Limit);
-    EXPECT_NEAR(depth_along(s, t, x, way.normal), way.depth, 1e-12);
+    const Penetration found = epa(s, t, x, Simplex{}, nothing, options);
+    EXPECT_EQ(found.state, Penetration::State::Limit);
+    EXPECT_NEAR(depth_along(s, t, x, found.normal), found.depth, 1e-12);
 }
 
 Feature face_of(const Box& box, Vec3d direction, Vec3d shift) {
     Feature feature;
     CoreFeatures<Box>::feature(box, direction, feature);
-    for (std::size_t i = 0; i < 4; ++i) feature.corners[i].at += shift;
+    for (std::size_t i = 0; i < 4; ++i) feature.corners[i].position += shift;
     return feature;
 }
 

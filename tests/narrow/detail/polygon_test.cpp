@@ -1,4 +1,4 @@
-/// Four points for many: which are kept.
+/// The reduction of contact candidates to four points.
 #include "fase/narrow/detail/polygon.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(ReduceToFour, KeepsTheDeepest) {
 }
 
 TEST(ReduceToFour, KeepsMostOfTheAreaOfARing) {
-    // The best four of a circle hold 2 / pi = 0.64 of it.
+    // The best four points of a circle span 2 / pi = 0.64 of its area.
     for (int count = 5; count <= 64; ++count) {
         PlanarPoints points = ring(count, 1);
         const double all = area_of(points);
@@ -70,7 +70,7 @@ TEST(ReduceToFour, KeepsMostOfTheAreaOfARing) {
 }
 
 TEST(ReduceToFour, AddsAFourthWhereTheFirstTwoAreNeighbours) {
-    // The deepest and the farthest from it are the ends of one side: all others are on one side of their line.
+    // The deepest point and the farthest from it are the ends of one side: all others are on one side of their line.
     PlanarPoints points;
     points.put(0, 0, -1, 0);
     points.put(10, 0, 0, 1);
@@ -91,7 +91,7 @@ TEST(ReduceToFour, KeepsTheEndsOfALine) {
     EXPECT_EQ(points.u[1], 6);
 }
 
-TEST(ReduceToFour, IsNotSwayedByNoise) {
+TEST(ReduceToFour, IsStableUnderNoise) {
     Random random(2);
     PlanarPoints first = ring(12, 1);
     reduce_to_four(first, 1e-4f);
