@@ -1,4 +1,4 @@
-/// Sprites to pages.
+/// Packs sprites onto pages; equal sprites share one place.
 #include "fase/atlas/atlas.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t max_page_pixels = std::int64_t{1} << 28;
 
-/// Whether it is well-formed UTF-8 (RFC 3629).
+/// Returns whether the text is well-formed UTF-8 (RFC 3629).
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
@@ -38,27 +38,27 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
-/// A sprite's part that goes onto a page.
+/// The part of a sprite to put onto a page.
 struct Picture {
     Area part;
-    Image cut;  ///< only where the part is not the whole
+    Image cropped;  ///< empty if the part is the whole sprite
 };
 
 }  // namespace
 
 std::string_view problem_of_name(std::string_view name) {
-    if (name.empty()) return "found an empty name, need one";
-    if (!is_utf8(name)) return "found a name that is not UTF-8, need one that is";
+    if (name.empty()) return "found an empty name; expected a name";
+    if (!is_utf8(name)) return "found a name that is not UTF-8; expected UTF-8";
     for (const char c : name)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "found a control character, need a plain name";
-    if (name.find('\\') != std::string_view::npos) return "found a backslash, need '/' between folders";
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "found a control character; expected none";
+    if (name.find('\\') != std::string_view::npos) return "found a backslash; expected '/' between folders";
     const bool drive = name.size() >= 2 && name[1] == ':';
-    if (name.front() == '/' || drive) return "found an absolute name, need one inside the folder";
+    if (name.front() == '/' || drive) return "found an absolute path; expected a relative one";
     for (std::size_t begin = 0; begin <= name.size();) {
         const std::size_t end = std::min(name.find('/', begin), name.size());
         const std::string_view part = name.substr(begin, end - begin);
         if (part == ".." || part == "." || part.empty())
-            return "found a name that leaves the folder or is not its shortest, need one inside the folder";
+            return "found an empty, \".\" or \"..\" part; expected a normalized path inside the folder";
         begin = end + 1;
     }
     return {};
@@ -72,24 +72,24 @@ Result<Atlas> make_atlas(std::span<const Sprite> sprites, const AtlasOptions& op
         if (const std::string_view problem = problem_of_name(sprite.name); !problem.empty())
             return Error{Status::BadArgument, sprite.name, std::string(problem), {}};
         if (!names.insert(sprite.name).second)
-            return Error{Status::BadArgument, sprite.name, "found the name twice, need different names", {}};
+            return Error{Status::BadArgument, sprite.name, "found the name twice; expected different names", {}};
         if (sprite.image.size.width < 1 || sprite.image.size.height < 1)
-            return Error{Status::BadArgument, sprite.name, "found an image without pixels, need some", {}};
+            return Error{Status::BadArgument, sprite.name, "found an image without pixels; expected at least one", {}};
     }
     std::vector<Picture> pictures(sprites.size());
-    std::vector<std::size_t> picture_of(sprites.size());  // the sprite whose picture it shares
+    std::vector<std::size_t> picture_of(sprites.size());  // the first sprite with the same picture
     std::vector<std::uint32_t> rectangle_of(sprites.size());
     std::multimap<std::uint64_t, std::size_t> by_hash;
     std::vector<Size> sizes;
     std::vector<std::size_t> owners;
     const auto picture = [&](std::size_t i) -> const Image& {
-        return pictures[i].cut.pixels.empty() ? sprites[i].image : pictures[i].cut;
+        return pictures[i].cropped.pixels.empty() ? sprites[i].image : pictures[i].cropped;
     };
     for (std::size_t i = 0; i < sprites.size(); ++i) {
         const Image& image = sprites[i].image;
         const Area whole{0, 0, image.size.width, image.size.height};
         pictures[i].part = options.trim ? visible_part(image) : whole;
-        if (pictures[i].part != whole) pictures[i].cut = cut_out(image, pictures[i].part);
+        if (pictures[i].part != whole) pictures[i].cropped = cut_out(image, pictures[i].part);
         const std::uint64_t hash = hash_of(picture(i));
         picture_of[i] = i;
         const auto [begin, end] = by_hash.equal_range(hash);
@@ -107,7 +107,7 @@ Result<Atlas> make_atlas(std::span<const Sprite> sprites, const AtlasOptions& op
     atlas.pack_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     if (!packing) {
         Error error = packing.error();
-        // "rectangle 17" says nothing to who gave sprites.
+        // The caller knows sprites by name, not as "rectangle 17".
         const std::string_view word = "rectangle ";
         if (error.where.starts_with(word))
             error.where = sprites[owners[std::stoul(error.where.substr(word.size()))]].name;
@@ -117,8 +117,8 @@ Result<Atlas> make_atlas(std::span<const Sprite> sprites, const AtlasOptions& op
     for (const Size page : packing->pages) pixels += area_of(page);
     if (pixels > max_page_pixels)
         return Error{Status::Capacity, "atlas",
-                     fmt::format("found {} pages of {} pixels, need at most {} pixels", packing->pages.size(), pixels,
-                                 max_page_pixels),
+                     fmt::format("found {} pages of {} pixels; expected at most {} pixels", packing->pages.size(),
+                                 pixels, max_page_pixels),
                      "make several atlases"};
     for (const Size page : packing->pages) atlas.pages.emplace_back(page);
     for (std::size_t i = 0; i < sprites.size(); ++i) {

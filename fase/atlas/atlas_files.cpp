@@ -1,4 +1,4 @@
-/// The files of an atlas: pages as PNG, frames as JSON.
+/// Encodes an atlas as files: pages as PNG, frames as JSON.
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 namespace fase::atlas {
 namespace {
 
-/// A JSON string. Names are UTF-8 (problem_of_name()); a file's name is what it is.
+/// Returns the text as a JSON string. Sprite names are UTF-8 (see problem_of_name()); file names are not checked.
 std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -35,18 +35,18 @@ std::string text_of(const Area& area) {
 }
 std::string text_of(Size size) { return fmt::format("{{\"w\":{},\"h\":{}}}", size.width, size.height); }
 
-std::string file_part(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+std::string file_name_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 std::string json_of(const Atlas& atlas, std::uint32_t page, const std::string& name, bool array) {
     const auto page_name = [&](std::uint32_t i) {
         return atlas.pages.size() == 1 ? name : fmt::format("{}-{}", name, i);
     };
     std::string text = array ? "{\"frames\":[" : "{\"frames\":{";
-    const char* between = "\n";
+    const char* separator = "\n";
     for (const Frame& frame : atlas.frames) {
         if (frame.page != page) continue;
-        text += between;
-        between = ",\n";
+        text += separator;
+        separator = ",\n";
         text += array ? fmt::format("{{\"filename\":{},", quoted(frame.name)) : quoted(frame.name) + ":{";
         text += fmt::format("\"frame\":{},\"rotated\":{},\"trimmed\":{},\"spriteSourceSize\":{},\"sourceSize\":{}}}",
                             text_of(frame.part), frame.rotated, frame.trimmed, text_of(frame.source),
@@ -73,14 +73,14 @@ std::string json_of(const Atlas& atlas, std::uint32_t page, const std::string& n
 }  // namespace
 
 Result<std::vector<NamedBytes>> files_of(const Atlas& atlas, const std::string& name, const AtlasOptions& options) {
-    if (file_part(name).empty()) return Error{Status::BadArgument, name, "found no file's name, need one", {}};
+    if (file_name_of(name).empty()) return Error{Status::BadArgument, name, "found no file name; expected one", {}};
     std::vector<NamedBytes> files;
     for (std::uint32_t page = 0; page < atlas.pages.size(); ++page) {
         const std::string base = atlas.pages.size() == 1 ? name : fmt::format("{}-{}", name, page);
         Result<std::vector<std::byte>> png = write_png(atlas.pages[page]);
         if (!png) return png.error();
         files.push_back({base + ".png", *std::move(png)});
-        const std::string json = json_of(atlas, page, file_part(name), options.array);
+        const std::string json = json_of(atlas, page, file_name_of(name), options.array);
         const auto* bytes = reinterpret_cast<const std::byte*>(json.data());
         files.push_back({base + ".json", {bytes, bytes + json.size()}});
     }
@@ -89,30 +89,30 @@ Result<std::vector<NamedBytes>> files_of(const Atlas& atlas, const std::string& 
 
 Result<void> write_files(std::span<const NamedBytes> files) {
     std::vector<std::string> staged;
-    const auto take_back = [&] {
+    const auto remove_staged = [&] {
         for (const std::string& name : staged) ::unlink(name.c_str());
     };
     for (const NamedBytes& file : files) {
         const std::string name = fmt::format("{}.new{}", file.name, ::getpid());
         if (auto written = write_file(name, file.bytes); !written) {
-            take_back();
+            remove_staged();
             Error error = written.error();
             error.where = file.name;
             return error;
         }
         staged.push_back(name);
     }
-    // Nothing else stands in the way of a rename in the folder that was just written to.
+    // In a folder that was just written to, only an existing folder of the same name can prevent a rename.
     for (const NamedBytes& file : files) {
-        struct stat there = {};
-        if (::stat(file.name.c_str(), &there) != 0 || !S_ISDIR(there.st_mode)) continue;
-        take_back();
-        return Error{Status::Io, file.name, "found a folder, need a file's name", {}};
+        struct stat info = {};
+        if (::stat(file.name.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)) continue;
+        remove_staged();
+        return Error{Status::Io, file.name, "found a folder; expected a file name", {}};
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
         if (std::rename(staged[i].c_str(), files[i].name.c_str()) == 0) continue;
         const Error error{Status::Io, files[i].name, fmt::format("cannot write: {}", std::strerror(errno)), {}};
-        take_back();
+        remove_staged();
         return error;
     }
     return {};

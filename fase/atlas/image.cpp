@@ -1,4 +1,4 @@
-/// Images in memory, as sprites need them.
+/// RGBA images in memory, with the operations that an atlas needs.
 #include "fase/atlas/image.hpp"
 
 #include <algorithm>
@@ -10,15 +10,15 @@ namespace fase::atlas {
 
 Area visible_part(const Image& image) {
     const int width = image.size.width, height = image.size.height;
-    const auto row_shows = [&](int y) {
+    const auto row_is_visible = [&](int y) {
         for (int x = 0; x < width; ++x)
             if (image.at(x, y)[3] != 0) return true;
         return false;
     };
     int top = 0, bottom = height;
-    while (top < height && !row_shows(top)) ++top;
+    while (top < height && !row_is_visible(top)) ++top;
     if (top == height) return {0, 0, std::min(width, 1), std::min(height, 1)};
-    while (!row_shows(bottom - 1)) --bottom;
+    while (!row_is_visible(bottom - 1)) --bottom;
     int left = width, right = 0;
     for (int y = top; y < bottom; ++y) {
         for (int x = 0; x < left; ++x)

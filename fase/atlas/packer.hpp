@@ -1,5 +1,5 @@
 #pragma once
-/// Lays rectangles on as few and as small pages as it can find within a budget.
+/// Packs rectangles onto as few and as small pages as it finds within a budget.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,56 +13,57 @@ namespace fase::atlas {
 /// The largest side of a page and of a rectangle.
 inline constexpr int max_page_side = 65536;
 
-/// Whose rules are tried.
+/// Which packing algorithms are tried.
 enum class Method : std::uint8_t {
-    Best,     ///< fillings along a skyline and kD-trees in turn
-    KdTree,   ///< kD-trees alone
-    Skyline,  ///< fillings along a skyline alone
+    Best,     ///< skylines and kD-trees, alternating
+    KdTree,   ///< kD-trees only
+    Skyline,  ///< skylines only
 };
 
-/// What is asked of a packing.
+/// The limits and options of a packing.
 struct PackOptions {
-    int max_side = 4096;        ///< no page is wider or higher; 1 to max_page_side
-    int padding = 0;            ///< pixels between neighbours that stay empty; none at the page's edge
-    int extrude = 0;            ///< pixels around each rectangle that are its own (for repeated edges)
-    bool rotate = true;         ///< may lie turned by 90°
-    bool power_of_two = false;  ///< width and height of pages are powers of two, width equal to height or its double
-    bool crop = false;          ///< cut off what stays empty at the right and below (not with power_of_two)
+    int max_side = 4096;        ///< the largest width and height of a page; 1 to max_page_side
+    int padding = 0;            ///< empty pixels between neighbours; none at the page's edge
+    int extrude = 0;            ///< pixels around each rectangle that are reserved for its repeated edges
+    bool rotate = true;         ///< allows rotation by 90°
+    bool power_of_two = false;  ///< page width and height are powers of two; the width is the height or twice it
+    bool crop = false;          ///< cut empty space off at the right and at the bottom (not with power_of_two)
     Method method = Method::Best;
-    double budget_ms = 50;  ///< stop trying after so long, wall clock; the first answer is given however long it takes
-    int tries = 0;          ///< or after so many tries a page, whatever the time; 0: by time
+    double budget_ms = 50;  ///< wall-clock limit for further tries; the first result may take longer
+    int tries = 0;          ///< tries per page, regardless of time; 0: limited by budget_ms
 };
 
-/// Where a rectangle lies; without extrusion and padding.
+/// The position of a rectangle, without extrusion and padding.
 struct Place {
     std::uint32_t page = 0;
     int x = 0, y = 0;      ///< upper left pixel
-    bool rotated = false;  ///< it takes height × width pixels
+    bool rotated = false;  ///< covers height × width pixels
     friend bool operator==(const Place&, const Place&) = default;
 };
 
-/// All rectangles laid down.
+/// The places of all rectangles.
 struct Packing {
-    std::vector<Place> places;  ///< by rectangle
+    std::vector<Place> places;  ///< indexed by rectangle
     std::vector<Size> pages;
-    int tries = 0;     ///< fillings made, broken off ones included
-    std::string rule;  ///< which rules the first page was made by
+    int tries = 0;     ///< attempts to fill a page, including aborted ones
+    std::string rule;  ///< the rules that filled the first page
 
-    /// The share of the pages' pixels that rectangles cover (without extrusion and padding): 0 to 1.
+    /// Returns the fraction of the page pixels that rectangles cover (without extrusion and padding): 0 to 1.
     [[nodiscard]] double occupancy(std::span<const Size> sizes) const;
 };
 
-/// Packs: the smallest square page that is found, or, where max_side does not hold all, full pages and a smallest last
-/// one. The tries follow one another in an order that depends on sizes and options only, and the best is kept: the same
-/// tries give the same packing on any machine; a budget in time only says how many there are.
-/// Refused: BadArgument for options out of range, OutOfRange for a size of 0 or below or larger than a page (`where`:
-/// "rectangle 17"). Some 0.1 µs a rectangle and try; a kD-tree's try more.
+/// Packs all rectangles onto the smallest square page it finds. If max_side is too small for one page, fills whole
+/// pages and makes the last one as small as possible. The order of tries depends only on sizes and options, and the
+/// best result is kept: the same number of tries gives the same packing on any machine; a time budget only limits their
+/// number. Errors: BadArgument for options out of range; OutOfRange for a size below 1 or larger than a page (`where`:
+/// "rectangle 17"). Cost: about 0.1 µs per rectangle and try; more for a try with a kD-tree.
 [[nodiscard]] Result<Packing> pack(std::span<const Size> sizes, const PackOptions& options = {});
 
-/// Adds rectangles to a packing that was made with the same options of the rectangles `there`: into what is free on its
-/// pages, which keep their sizes and what lies on them, then onto new pages. Their places follow those of `there`.
-/// A kD-tree finds what is free: O((n + m) log n) in the usual case.
-[[nodiscard]] Result<void> add(Packing& packing, std::span<const Size> there, std::span<const Size> more,
+/// Adds the rectangles `added` to a packing of the rectangles `packed`, made with the same options: first into the free
+/// space of its pages, which keep their size and content, then onto new pages. Their places follow those of `packed`.
+/// Error BadArgument if `packed` has another length than the packing; errors of pack().
+/// A kD-tree finds the free space: O((n + m) log n) in the usual case.
+[[nodiscard]] Result<void> add(Packing& packing, std::span<const Size> packed, std::span<const Size> added,
                                const PackOptions& options = {});
 
 }  // namespace fase::atlas

@@ -1,5 +1,5 @@
-/// PNG files in and out, through libpng. libpng leaves its functions by longjmp when something is wrong: it is called
-/// only from functions whose locals need no destructor, and what they fill belongs to their callers.
+/// Reads and writes PNG files through libpng. libpng reports errors by longjmp, so it is called only from functions
+/// whose locals need no destructor; their callers own the buffers.
 #include "fase/atlas/png.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 namespace fase::atlas {
 namespace {
 
-/// What libpng's callbacks reach: bytes to read or a place to write, and the message of its error.
-struct Talk {
+/// The state that libpng's callbacks share: input, output and the error message.
+struct PngIo {
     const std::byte* next = nullptr;
     std::size_t left = 0, size = 0;
     std::vector<std::byte>* out = nullptr;
@@ -25,40 +25,41 @@ struct Talk {
     std::jmp_buf back;
 };
 
-void say(Talk& talk, const char* text) { std::snprintf(talk.message, sizeof talk.message, "%s", text); }
+void set_message(PngIo& io, const char* text) { std::snprintf(io.message, sizeof io.message, "%s", text); }
 
 [[noreturn]] void on_error(png_structp png, png_const_charp text) {
-    auto& talk = *static_cast<Talk*>(png_get_error_ptr(png));
-    say(talk, text);
-    std::longjmp(talk.back, 1);
+    auto& io = *static_cast<PngIo*>(png_get_error_ptr(png));
+    set_message(io, text);
+    std::longjmp(io.back, 1);
 }
 void on_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep to, std::size_t count) {
-    auto& talk = *static_cast<Talk*>(png_get_io_ptr(png));
-    if (count > talk.left) png_error(png, "the file ends too early");
-    std::memcpy(to, talk.next, count);
-    talk.next += count;
-    talk.left -= count;
+    auto& io = *static_cast<PngIo*>(png_get_io_ptr(png));
+    if (count > io.left) png_error(png, "the file ends too early");
+    std::memcpy(to, io.next, count);
+    io.next += count;
+    io.left -= count;
 }
 
-/// Adds to the output; false without memory. The vector is touched here only, so that no jump leaves it half grown.
-bool append(Talk& talk, const png_byte* from, std::size_t count) noexcept {
+/// Appends to the output; returns false if memory runs out. Only this function changes the vector, so that no longjmp
+/// interrupts a reallocation.
+bool append(PngIo& io, const png_byte* from, std::size_t count) noexcept {
     try {
         const auto* bytes = reinterpret_cast<const std::byte*>(from);
-        talk.out->insert(talk.out->end(), bytes, bytes + count);
+        io.out->insert(io.out->end(), bytes, bytes + count);
         return true;
     } catch (...) {
-        talk.no_memory = true;
+        io.no_memory = true;
         return false;
     }
 }
 void on_write(png_structp png, png_bytep from, std::size_t count) {
-    if (!append(*static_cast<Talk*>(png_get_io_ptr(png)), from, count)) png_error(png, "too little memory");
+    if (!append(*static_cast<PngIo*>(png_get_io_ptr(png)), from, count)) png_error(png, "not enough memory");
 }
 void on_flush(png_structp) {}
 
-/// Both structures of libpng, freed at the end.
+/// Owns both structures of libpng.
 struct Handles {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -82,12 +83,12 @@ struct Header {
     std::array<std::array<std::uint8_t, 4>, 256> palette = {};
 };
 
-/// Reads all that stands before the pixels and asks for rows of RGBA, or of a palette's indices.
-bool read_header(png_structp png, png_infop info, Talk& talk, Header& header) {
-    if (setjmp(talk.back) != 0) return false;
-    png_set_read_fn(png, &talk, on_read);
+/// Reads everything before the pixels and requests rows of RGBA or of palette indices.
+bool read_header(png_structp png, png_infop info, PngIo& io, Header& header) {
+    if (setjmp(io.back) != 0) return false;
+    png_set_read_fn(png, &io, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // told apart by our own limit
+    png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // read_png() checks max_pixels instead
     png_read_info(png, info);
     png_get_IHDR(png, info, &header.width, &header.height, &header.depth, &header.kind, &header.interlaced, nullptr,
                  nullptr);
@@ -110,10 +111,10 @@ bool read_header(png_structp png, png_infop info, Talk& talk, Header& header) {
     return true;
 }
 
-/// Reads the pixels, whose rows lie one after the other, and the end of the file.
-bool read_rows(png_structp png, png_infop info, Talk& talk, std::uint8_t* pixels, std::size_t row_size,
+/// Reads the pixels into contiguous rows, then the end of the file.
+bool read_rows(png_structp png, png_infop info, PngIo& io, std::uint8_t* pixels, std::size_t row_size,
                png_uint_32 height) {
-    if (setjmp(talk.back) != 0) return false;
+    if (setjmp(io.back) != 0) return false;
     const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
     if (png_get_rowbytes(png, info) != row_size) png_error(png, "rows of an unexpected size");
@@ -123,9 +124,9 @@ bool read_rows(png_structp png, png_infop info, Talk& talk, std::uint8_t* pixels
     return true;
 }
 
-bool write_all(png_structp png, png_infop info, Talk& talk, const Image& image) {
-    if (setjmp(talk.back) != 0) return false;
-    png_set_write_fn(png, &talk, on_write, on_flush);
+bool write_all(png_structp png, png_infop info, PngIo& io, const Image& image) {
+    if (setjmp(io.back) != 0) return false;
+    png_set_write_fn(png, &io, on_write, on_flush);
     png_set_IHDR(png, info, static_cast<png_uint_32>(image.size.width), static_cast<png_uint_32>(image.size.height), 8,
                  PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
@@ -137,41 +138,41 @@ bool write_all(png_structp png, png_infop info, Talk& talk, const Image& image) 
 }  // namespace
 
 Result<Image> read_png(std::span<const std::byte> bytes, const std::string& where) {
-    Talk talk;
-    talk.next = bytes.data();
-    talk.left = talk.size = bytes.size();
+    PngIo io;
+    io.next = bytes.data();
+    io.left = io.size = bytes.size();
     const auto refuse = [&](std::string problem) {
-        return Error{Status::Format, fmt::format("{}:{}", where, talk.size - talk.left), std::move(problem), {}};
+        return Error{Status::Format, fmt::format("{}:{}", where, io.size - io.left), std::move(problem), {}};
     };
     if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
-        return refuse("found no PNG signature, need a PNG file");
+        return refuse("found no PNG signature; expected a PNG file");
     Handles handles;
-    handles.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning);
+    handles.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &io, on_error, on_warning);
     if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);
-    if (handles.info == nullptr) return Error{Status::NoMemory, where, "found too little memory", {}};
+    if (handles.info == nullptr) return Error{Status::NoMemory, where, "not enough memory", {}};
     Header header;
-    if (!read_header(handles.png, handles.info, talk, header))
-        return refuse(fmt::format("found a broken PNG ({}), need a whole one", talk.message));
+    if (!read_header(handles.png, handles.info, io, header))
+        return refuse(fmt::format("found a broken PNG ({}); expected a complete one", io.message));
     const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
     if (pixels > static_cast<std::uint64_t>(max_pixels))
-        return refuse(
-            fmt::format("image expands to {} x {} pixels, limit {} pixels", header.width, header.height, max_pixels));
-    // Deflate makes at most 1032 bytes of one: an image that cannot be in the file gets no memory.
+        return refuse(fmt::format("image expands to {} x {} pixels; expected at most {} pixels", header.width,
+                                  header.height, max_pixels));
+    // Deflate expands one byte to at most 1032: reject a size that the file cannot contain before allocating it.
     const std::uint64_t channels = header.kind == PNG_COLOR_TYPE_RGB || header.kind == PNG_COLOR_TYPE_RGBA ? 3 : 1;
-    const std::uint64_t least = pixels * channels * static_cast<std::uint64_t>(header.depth) / 8 / 1032;
-    if (least > bytes.size())
-        return refuse(fmt::format("found {} bytes, need at least {} for {} x {} pixels", bytes.size(), least,
+    const std::uint64_t min_bytes = pixels * channels * static_cast<std::uint64_t>(header.depth) / 8 / 1032;
+    if (min_bytes > bytes.size())
+        return refuse(fmt::format("found {} bytes; expected at least {} for {} x {} pixels", bytes.size(), min_bytes,
                                   header.width, header.height));
     Image image(Size{static_cast<int>(header.width), static_cast<int>(header.height)});
     const bool indexed = header.kind == PNG_COLOR_TYPE_PALETTE;
     std::vector<std::uint8_t> indices(indexed ? static_cast<std::size_t>(pixels) : 0);
     std::uint8_t* const rows = indexed ? indices.data() : image.pixels.data();
     const std::size_t row_size = std::size_t{header.width} * (indexed ? 1 : 4);
-    if (!read_rows(handles.png, handles.info, talk, rows, row_size, header.height))
-        return refuse(fmt::format("found a broken PNG ({}), need a whole one", talk.message));
+    if (!read_rows(handles.png, handles.info, io, rows, row_size, header.height))
+        return refuse(fmt::format("found a broken PNG ({}); expected a complete one", io.message));
     for (std::size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] >= header.colours)
-            return refuse(fmt::format("found palette index {} at pixel {}, {}, need 0 to {}", indices[i],
+            return refuse(fmt::format("found palette index {} at pixel {}, {}; expected 0 to {}", indices[i],
                                       i % header.width, i / header.width, header.colours - 1));
         std::memcpy(image.pixels.data() + 4 * i, header.palette[indices[i]].data(), 4);
     }
@@ -186,25 +187,25 @@ Result<Image> read_png_file(const std::string& path) {
 
 Result<std::vector<std::byte>> write_png(const Image& image) {
     if (image.size.width < 1 || image.size.height < 1)
-        return Error{Status::BadArgument, "image", "found no pixels, need some", {}};
+        return Error{Status::BadArgument, "image", "found no pixels; expected at least one", {}};
     if (image.size.width > 65536 || image.size.height > 65536)
         return Error{
             Status::Capacity,
             "image",
-            fmt::format("found {} x {} pixels, need sides of at most 65536", image.size.width, image.size.height),
+            fmt::format("found {} x {} pixels; expected sides of at most 65536", image.size.width, image.size.height),
             {}};
     std::vector<std::byte> out;
-    Talk talk;
-    talk.out = &out;
+    PngIo io;
+    io.out = &out;
     Handles handles;
     handles.reads = false;
-    handles.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning);
+    handles.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &io, on_error, on_warning);
     if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);
-    if (handles.info == nullptr) return Error{Status::NoMemory, "image", "found too little memory", {}};
-    if (!write_all(handles.png, handles.info, talk, image))
-        return Error{talk.no_memory ? Status::NoMemory : Status::Io,
+    if (handles.info == nullptr) return Error{Status::NoMemory, "image", "not enough memory", {}};
+    if (!write_all(handles.png, handles.info, io, image))
+        return Error{io.no_memory ? Status::NoMemory : Status::Io,
                      "image",
-                     fmt::format("cannot be written as PNG: {}", talk.message),
+                     fmt::format("cannot be written as PNG: {}", io.message),
                      {}};
     return out;
 }

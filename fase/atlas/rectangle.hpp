@@ -1,16 +1,16 @@
 #pragma once
-/// The words of packing: sizes, and where on a page something lies. All in whole pixels, y down.
+/// Sizes and positions on a page. All are whole pixels; y points down.
 #include <cstdint>
 
 namespace fase::atlas {
 
-/// How wide and how high.
+/// A width and a height.
 struct Size {
     int width = 0, height = 0;
     friend bool operator==(const Size&, const Size&) = default;
 };
 
-/// Pixels in it.
+/// Returns the number of pixels.
 [[nodiscard]] constexpr std::int64_t area_of(Size size) { return std::int64_t{size.width} * size.height; }
 
 /// A part of a page; x and y are its upper left pixel.
@@ -19,19 +19,19 @@ struct Area {
     friend bool operator==(const Area&, const Area&) = default;
 };
 
-/// Whether two areas share a pixel.
+/// Returns whether two areas share a pixel.
 [[nodiscard]] constexpr bool overlaps(const Area& a, const Area& b) {
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// Sizes that are the same, as the rules of packing see them: how many there are is kept beside.
+/// A distinct rectangle size. The packing rules see kinds; how many rectangles have that size is stored separately.
 using Kind = Size;
 
-/// One rectangle of a kind, laid down. Turned: it lies with width and height exchanged.
-struct Laid {
+/// One placed rectangle of a kind. Rotated: its width and height are exchanged.
+struct PlacedKind {
     std::uint32_t kind = 0;
     int x = 0, y = 0;
-    bool turned = false;
+    bool rotated = false;
 };
 
 }  // namespace fase::atlas

@@ -1,4 +1,4 @@
-/// Cells are cut from the root down, each with the walls in it, until no line divides the walls of a cell.
+/// Divides cells from the root down, each with its walls, until no line divides the walls of a cell.
 #include "fase/level/bsp_compiler.hpp"
 
 #include <fmt/format.h>
@@ -11,30 +11,30 @@
 namespace fase::level {
 namespace {
 
-/// A cell to be cut. Its pieces and corners are the last ones of their stacks when its turn comes.
+/// A pending cell. Its pieces and corners are at the end of their stacks when it is popped.
 struct Cell {
     std::uint32_t first_piece = 0, first_corner = 0;
-    std::uint32_t parent = CellCorner::none;
+    std::uint32_t parent = no_index;
     std::uint32_t child = 0;  ///< which of the parent's
     std::uint32_t depth = 0;
 };
 
-/// Cuts convex cells and the pieces in them.
-class Cutter {
+/// Divides convex cells and the pieces in them.
+class CellDivider {
 public:
-    Cutter(const CompileOptions& options, Plan&& plan, std::vector<Piece>&& pieces)
+    CellDivider(const CompileOptions& options, Plan&& plan, std::vector<Piece>&& pieces)
         : options_(options), pieces_(std::move(pieces)) {
         tree_.plan = std::move(plan);
         const std::uint32_t box = tree_.plan.box_planes;
         for (std::uint32_t k = 0; k < 4; ++k) {
             const ExactPoint corner = exact_meeting(tree_.plan.planes[box + (k + 3) % 4], tree_.plan.planes[box + k]);
-            corners_.push_back({tree_.plan.points.index_of(corner), box + k, CellCorner::none});
+            corners_.push_back({tree_.plan.points.index_of(corner), box + k, no_index});
         }
         cells_.push_back({});
     }
 
-    /// False when there come to be too many pieces.
-    bool cut() {
+    /// Builds the tree. Returns false if there are too many pieces.
+    bool run() {
         PartitionChoice choice(tree_.plan, options_);
         while (!cells_.empty()) {
             const Cell cell = cells_.back();
@@ -44,9 +44,9 @@ public:
             pieces_.resize(cell.first_piece);
             corners_.resize(cell.first_corner);
             const std::uint32_t plane = choice.choose(inside_, cell.depth);
-            const bool is_leaf = plane == Plan::no_plane;
+            const bool is_leaf = plane == no_index;
             const auto index = static_cast<std::uint32_t>(is_leaf ? tree_.leaves.size() : tree_.nodes.size());
-            if (cell.parent != CellCorner::none)
+            if (cell.parent != no_index)
                 tree_.nodes[cell.parent].children[cell.child] = is_leaf ? Node::leaf_bit | index : index;
             if (is_leaf) {
                 add_leaf(cell.depth);
@@ -58,21 +58,21 @@ public:
         }
         return true;
     }
-    RawTree&& take() { return std::move(tree_); }
+    RawTree&& release() { return std::move(tree_); }
 
 private:
     const CompileOptions& options_;
     RawTree tree_;
     std::vector<Cell> cells_;
-    std::vector<Piece> pieces_, inside_, left_pieces_;
-    std::vector<CellCorner> corners_, outline_, cut_outline_;
+    std::vector<Piece> pieces_, inside_, right_pieces_;
+    std::vector<CellCorner> corners_, outline_, clipped_outline_;
 
-    /// Pushes the left part of the cell at hand, then the right one.
+    /// Pushes the left part of the current cell, then the right part.
     void divide(std::uint32_t plane, std::uint32_t node, std::uint32_t depth) {
         for (const int child : {1, 0}) {
             cells_.push_back({static_cast<std::uint32_t>(pieces_.size()), static_cast<std::uint32_t>(corners_.size()),
                               node, static_cast<std::uint32_t>(child), depth + 1});
-            keep_outline(plane, node, child == 0, corners_);
+            clip_outline(plane, node, child == 0, corners_);
             if (child == 1) {
                 divide_pieces(plane);
             } else {
@@ -81,9 +81,7 @@ private:
         }
     }
 
-    std::vector<Piece> right_pieces_;
-
-    /// Left pieces onto the stack, right ones aside.
+    /// Pushes left pieces on the stack; stores right pieces in `right_pieces_`.
     void divide_pieces(std::uint32_t plane) {
         Plan& plan = tree_.plan;
         const ExactLine line = plan.planes[plane];
@@ -102,17 +100,18 @@ private:
             } else if (a >= 0 && b >= 0) {
                 pieces_.push_back(piece);
             } else {
-                const std::uint32_t at =
+                const std::uint32_t crossing =
                     plan.points.index_of(exact_meeting(line, plan.planes[plan.plane_of_line[piece.line]]));
-                const Piece first{piece.a, at, piece.line, piece.sides}, second{at, piece.b, piece.line, piece.sides};
+                const Piece first{piece.a, crossing, piece.line, piece.sides},
+                    second{crossing, piece.b, piece.line, piece.sides};
                 right_pieces_.push_back(a < 0 ? first : second);
                 pieces_.push_back(a < 0 ? second : first);
             }
         }
     }
 
-    /// The part of the outline at hand on one side of a plane, appended; `node` made the new edge.
-    void keep_outline(std::uint32_t plane, std::uint32_t node, bool right, std::vector<CellCorner>& out) {
+    /// Appends the part of the current outline on one side of a plane; `node` is the node of the new edge.
+    void clip_outline(std::uint32_t plane, std::uint32_t node, bool right, std::vector<CellCorner>& out) {
         Plan& plan = tree_.plan;
         const ExactLine line = plan.planes[plane];
         const int keep = right ? -1 : 1;
@@ -124,17 +123,18 @@ private:
             if (side > 0 || (side == 0 && next > 0)) {
                 out.push_back(corner);
             } else if (side == 0 && next < 0) {
-                out.push_back({corner.point, plane, node});  // the outline leaves here
+                out.push_back({corner.point, plane, node});  // the outline crosses to the other side
             }
             if (side * next < 0) {
-                const std::uint32_t at = plan.points.index_of(exact_meeting(line, plan.planes[corner.plane]));
-                out.push_back(side < 0 ? CellCorner{at, corner.plane, corner.node} : CellCorner{at, plane, node});
+                const std::uint32_t crossing = plan.points.index_of(exact_meeting(line, plan.planes[corner.plane]));
+                out.push_back(side < 0 ? CellCorner{crossing, corner.plane, corner.node}
+                                       : CellCorner{crossing, plane, node});
             }
             side = next;
         }
     }
 
-    /// The walls of a leaf cut off what lies behind them.
+    /// Adds a leaf; clips its cell by its walls.
     void add_leaf(std::uint32_t depth) {
         const Plan& plan = tree_.plan;
         for (const Piece& piece : inside_) {
@@ -142,9 +142,9 @@ private:
             const bool known =
                 std::any_of(outline_.begin(), outline_.end(), [&](const CellCorner& c) { return c.plane == plane; });
             if (known) continue;
-            cut_outline_.clear();
-            keep_outline(plane, CellCorner::none, plan.sides_right(piece) != 0, cut_outline_);
-            outline_.swap(cut_outline_);
+            clipped_outline_.clear();
+            clip_outline(plane, no_index, plan.sides_right(piece) != 0, clipped_outline_);
+            outline_.swap(clipped_outline_);
         }
         tree_.leaves.push_back(
             {static_cast<std::uint32_t>(tree_.pieces.size()), static_cast<std::uint32_t>(inside_.size()),
@@ -158,7 +158,7 @@ Result<void> check(const Map& map) {
     const auto refuse = [](std::size_t line, std::string_view what) {
         return Error{Status::BadArgument,
                      fmt::format("lines[{}]", line),
-                     fmt::format("found a {} that does not exist, need one of the map", what),
+                     fmt::format("found a {} that does not exist; expected one that the map has", what),
                      {}};
     };
     bool any = false;
@@ -173,7 +173,7 @@ Result<void> check(const Map& map) {
         }
     }
     if (any) return {};
-    return Error{Status::BadArgument, "lines", "found none that has a length and a side, need one", {}};
+    return Error{Status::BadArgument, "lines", "found no line with a length and a side; expected at least one", {}};
 }
 
 }  // namespace
@@ -182,14 +182,14 @@ Result<LevelBsp> compile(const Map& map, const CompileOptions& options) {
     if (auto good = check(map); !good) return good.error();
     std::vector<Piece> pieces;
     Plan plan = make_plan(map, pieces);
-    Cutter cutter(options, std::move(plan), std::move(pieces));
-    if (!cutter.cut()) {
+    CellDivider divider(options, std::move(plan), std::move(pieces));
+    if (!divider.run()) {
         return Error{Status::Capacity,
                      "lines",
-                     fmt::format("found more than {} pieces of lines that cross, need fewer", options.max_pieces),
+                     fmt::format("found more than {} pieces of lines that cross; expected fewer", options.max_pieces),
                      {}};
     }
-    return lay_out(map, cutter.take());
+    return lay_out(map, divider.release());
 }
 
 }  // namespace fase::level

@@ -1,34 +1,38 @@
 #pragma once
-/// The compiler: a map into a tree of partition lines, chosen from the map's own lines.
+/// The BSP compiler: builds a tree of partition lines for a map, chosen from the map's own lines.
 #include "fase/core/result.hpp"
 #include "fase/level/level_bsp.hpp"
 #include "fase/level/map.hpp"
 
 namespace fase::level {
 
-/// How long partition lines are sought.
+/// How much time is spent on the choice of a partition line.
 enum class Effort {
-    Quick,     ///< the line that looks best is taken
-    Normal,    ///< in small sets the best four are tried out
-    Thorough,  ///< in larger sets too, more of them, and twice over: some five times the time of Normal
+    Quick,     ///< takes the line of least estimated cost
+    Normal,    ///< in small sets, builds the trees of the best four lines and compares them
+    Thorough,  ///< also in larger sets, with more lines and at two levels: about five times the time of Normal
 };
 
 /// How partition lines are chosen.
 struct CompileOptions {
-    /// What one cut seg costs, in steps down the tree of one sub-sector; 0 or more. More: fewer cuts, a deeper tree.
+    /// The cost of one split seg, measured in levels of depth of one sub-sector; 0 or more. Larger: fewer splits, a
+    /// deeper tree.
     double split_weight = 1;
     Effort effort = Effort::Normal;
-    /// So many different lines are weighed at a node, at least 1, spread over all when there are more.
+    /// The number of different lines that are evaluated at a node, at least 1. If there are more, an evenly spread
+    /// subset is used.
     std::size_t candidates = 512;
-    /// Capacity error when more pieces come to be; lines that cross each other everywhere have n^2.
+    /// Returns a Capacity error if there are more pieces; n lines that all cross each other produce n^2.
     std::size_t max_pieces = std::size_t{1} << 21;
 };
 
-/// Cuts the map until each piece is convex and of one sector. All sides are decided in whole numbers (a cut point is
-/// kept as the crossing of two lines of the map), so no sliver is lost, however thin; the same tree on every machine.
-/// Maps that are no proper plans are compiled too: lines of zero length are left out; lines over each other leave
-/// strays; sectors that are not closed leave openings into nowhere, and reach as far as the box around the map.
-/// BadArgument when a line or side points to what there is not, or no line has a length. Capacity: see max_pieces.
+/// Splits the map until each piece is convex and belongs to one sector. All side tests use integer arithmetic (a split
+/// point is stored as the crossing of two lines of the map), so no sliver is lost, however thin, and the tree is the
+/// same on every machine.
+/// Malformed maps are compiled too: lines of zero length are skipped, overlapping lines become outliers, and a sector
+/// that is not closed extends to the box around the map, with edges that have no partner.
+/// Errors: BadArgument if a line or side refers to an element that does not exist, or if no line has a length.
+/// Capacity: see max_pieces.
 Result<LevelBsp> compile(const Map& map, const CompileOptions& options = {});
 
 }  // namespace fase::level

@@ -1,4 +1,4 @@
-/// Everything is measured from the parts that files hold: lines, segs, nodes.
+/// Measures a tree from the data in its file only: lines, segs, nodes.
 #include "fase/level/check_bsp.hpp"
 
 #include <algorithm>
@@ -10,13 +10,13 @@ namespace {
 
 double length_of(Point a, Point b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
-/// How far a point lies to the left of the way from a to b.
+/// Returns the distance of a point to the left of the line from a to b.
 double left_of(Point a, Point b, Point p) {
     const double length = length_of(a, b);
     return length == 0 ? 0 : ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) / length;
 }
 
-double area_of(const std::vector<Point>& outline) {  // clockwise: above 0
+double area_of(const std::vector<Point>& outline) {  // positive if clockwise
     double twice = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const Point a = outline[i], b = outline[(i + 1) % outline.size()], o = outline[0];
@@ -25,8 +25,8 @@ double area_of(const std::vector<Point>& outline) {  // clockwise: above 0
     return twice / 2;
 }
 
-/// What of an outline lies to the right of the way from a to b.
-void keep_right(std::vector<Point>& outline, Point a, Point b, std::vector<Point>& scratch) {
+/// Clips an outline to the right of the line from a to b.
+void clip_right(std::vector<Point>& outline, Point a, Point b, std::vector<Point>& scratch) {
     scratch.clear();
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const Point p = outline[i], q = outline[(i + 1) % outline.size()];
@@ -44,22 +44,22 @@ void keep_right(std::vector<Point>& outline, Point a, Point b, std::vector<Point
 class Checker {
 public:
     Checker(const Map& map, const LevelBsp& bsp) : map_(map), bsp_(bsp) {
-        for (std::uint32_t i = 0; i < map.sectors.size(); ++i) joined_.push_back(i);
+        for (std::uint32_t i = 0; i < map.sectors.size(); ++i) merged_.push_back(i);
         for (const Point p : bsp.vertices) plan_.add(p);
     }
 
-    BspCheck work() {
+    BspCheck run() {
         for (const SubSector& s : bsp_.sub_sectors) check_sub_sector(s);
         check_cover();
         areas_.assign(map_.sectors.size(), 0);
         const PlanBox around{{plan_.lo.x - 8, plan_.lo.y - 8}, {plan_.hi.x + 8, plan_.hi.y + 8}};
-        descend({bsp_.root(), {around.lo, {around.lo.x, around.hi.y}, around.hi, {around.hi.x, around.lo.y}}});
+        check_tree({bsp_.root(), {around.lo, {around.lo.x, around.hi.y}, around.hi, {around.hi.x, around.lo.y}}});
         check_areas();
         return out_;
     }
 
 private:
-    /// A child, and the cell that the partition lines above it leave.
+    /// A child, and the cell bounded by the partition lines above it.
     struct Cell {
         std::uint32_t child = 0;
         std::vector<Point> outline;
@@ -69,16 +69,16 @@ private:
     PlanBox plan_;
     BspCheck out_;
     std::vector<double> areas_;
-    std::vector<std::uint32_t> joined_;  ///< by sector: one that it is measured with, or itself
+    std::vector<std::uint32_t> merged_;  ///< by sector: a sector with which it is measured, or itself
 
-    [[nodiscard]] std::uint32_t first_of(std::uint32_t sector) const {
-        while (joined_[sector] != sector) sector = joined_[sector];
+    [[nodiscard]] std::uint32_t root_of(std::uint32_t sector) const {
+        while (merged_[sector] != sector) sector = merged_[sector];
         return sector;
     }
-    [[nodiscard]] Point at(std::uint32_t vertex) const { return bsp_.vertices[vertex]; }
-    /// Where a seg lies: of walls the line, which is not rounded.
-    [[nodiscard]] std::pair<Point, Point> way_of(const Seg& seg) const {
-        if (seg.line == no_line) return {at(seg.from), at(seg.to)};
+    [[nodiscard]] Point position(std::uint32_t vertex) const { return bsp_.vertices[vertex]; }
+    /// Returns the ends of a seg; for walls the ends of the line, which are not rounded.
+    [[nodiscard]] std::pair<Point, Point> ends_of(const Seg& seg) const {
+        if (seg.line == no_index) return {position(seg.from), position(seg.to)};
         const Line& line = map_.lines[seg.line];
         const Vertex a = map_.vertices[seg.left ? line.to : line.from],
                      b = map_.vertices[seg.left ? line.from : line.to];
@@ -93,26 +93,26 @@ private:
         const std::span<const Seg> segs(bsp_.segs.data() + s.first, std::size_t{s.edges} + s.outliers);
         bool mixed = false, open = false;
         for (const Seg& seg : segs) {
-            const auto [a, b] = way_of(seg);
+            const auto [a, b] = ends_of(seg);
             if (segs.size() <= 64 || &seg == segs.data()) {
                 for (const Seg& other : segs)
                     for (const std::uint32_t v : {other.from, other.to})
-                        out_.bulge = std::max(out_.bulge, left_of(a, b, at(v)));
-            } else {  // corners of long loops against the edges beside them
+                        out_.bulge = std::max(out_.bulge, left_of(a, b, position(v)));
+            } else {  // in long loops, only corners against the adjacent edges
                 const Seg& before = *(&seg - 1);
                 for (const std::uint32_t v : {before.from, before.to})
-                    out_.bulge = std::max(out_.bulge, left_of(a, b, at(v)));
+                    out_.bulge = std::max(out_.bulge, left_of(a, b, position(v)));
             }
-            if (seg.line == no_line || sector_of(seg) == s.sector) continue;
+            if (seg.line == no_index || sector_of(seg) == s.sector) continue;
             mixed = true;
-            const std::uint32_t a_sector = first_of(sector_of(seg)), b_sector = first_of(s.sector);
-            joined_[std::max(a_sector, b_sector)] = std::min(a_sector, b_sector);
+            const std::uint32_t a_sector = root_of(sector_of(seg)), b_sector = root_of(s.sector);
+            merged_[std::max(a_sector, b_sector)] = std::min(a_sector, b_sector);
         }
         for (std::uint32_t i = 0; i < s.edges; ++i) {
             const Seg& seg = segs[i];
             open |= seg.to != segs[(i + 1) % s.edges].from;
-            if (seg.partner == no_seg) {
-                out_.openings += seg.line == no_line ? 1 : 0;
+            if (seg.partner == no_index) {
+                out_.openings += seg.line == no_index ? 1 : 0;
                 continue;
             }
             const Seg& partner = bsp_.segs[seg.partner];
@@ -124,36 +124,37 @@ private:
         out_.open_loops += open ? 1 : 0;
     }
 
-    /// Each side of each line is covered by its segs from end to end.
+    /// Checks that the segs of each side of each line cover it from end to end.
     void check_cover() {
-        struct Stretch {
+        struct Interval {
             std::uint64_t side = 0;
             double from = 0, to = 0;
         };
-        std::vector<Stretch> stretches;
+        std::vector<Interval> intervals;
         std::vector<std::uint8_t> covered(2 * map_.lines.size());
         for (const SubSector& s : bsp_.sub_sectors) {
             for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
                 const Seg& seg = bsp_.segs[i];
-                if (seg.line == no_line) continue;
-                const auto [a, b] = way_of(seg);
+                if (seg.line == no_index) continue;
+                const auto [a, b] = ends_of(seg);
                 const auto along = [&, from = a, to = b](Point p) {
                     return ((p.x - from.x) * (to.x - from.x) + (p.y - from.y) * (to.y - from.y)) / length_of(from, to);
                 };
-                stretches.push_back({seg.line * 2ull + (seg.left ? 1 : 0), along(at(seg.from)), along(at(seg.to))});
+                intervals.push_back(
+                    {seg.line * 2ull + (seg.left ? 1 : 0), along(position(seg.from)), along(position(seg.to))});
             }
         }
-        std::sort(stretches.begin(), stretches.end(), [](const Stretch& p, const Stretch& q) {
+        std::sort(intervals.begin(), intervals.end(), [](const Interval& p, const Interval& q) {
             return p.side != q.side ? p.side < q.side : p.from < q.from;
         });
-        for (std::size_t i = 0; i < stretches.size();) {
-            const std::uint64_t side = stretches[i].side;
+        for (std::size_t i = 0; i < intervals.size();) {
+            const std::uint64_t side = intervals[i].side;
             covered[side] = 1;
             double end = 0;
-            for (; i < stretches.size() && stretches[i].side == side; ++i) {
-                out_.gaps += std::max(stretches[i].from - end, 0.0);
-                out_.overlaps += std::max(std::min(end, stretches[i].to) - stretches[i].from, 0.0);
-                end = std::max(end, stretches[i].to);
+            for (; i < intervals.size() && intervals[i].side == side; ++i) {
+                out_.gaps += std::max(intervals[i].from - end, 0.0);
+                out_.overlaps += std::max(std::min(end, intervals[i].to) - intervals[i].from, 0.0);
+                end = std::max(end, intervals[i].to);
             }
             out_.gaps += std::max(length_of_line(side / 2) - end, 0.0);
         }
@@ -168,9 +169,9 @@ private:
         return length_of({double(a.x), double(a.y)}, {double(b.x), double(b.y)});
     }
 
-    void descend(Cell root) {
+    void check_tree(Cell root) {
         std::vector<Cell> cells;
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> above;  // (node, side) of those on the way, by depth
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> above;  // (node, side) of the path from the root, by depth
         std::vector<std::size_t> depths{0};
         std::vector<Point> scratch;
         std::vector<std::pair<std::uint32_t, std::uint32_t>> steps{{0, 0}};
@@ -192,7 +193,7 @@ private:
             const Point a{double(node.x), double(node.y)}, b{a.x + node.dx, a.y + node.dy};
             for (const std::uint32_t side : {0u, 1u}) {
                 Cell child{node.children[side], cell.outline};
-                keep_right(child.outline, side == 0 ? a : b, side == 0 ? b : a, scratch);
+                clip_right(child.outline, side == 0 ? a : b, side == 0 ? b : a, scratch);
                 cells.push_back(std::move(child));
                 depths.push_back(depth + 1);
                 steps.emplace_back(index, side);
@@ -203,7 +204,7 @@ private:
                     std::vector<Point> outline, std::vector<Point>& scratch) {
         for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
             const Seg& seg = bsp_.segs[i];
-            for (const Point p : {at(seg.from), at(seg.to)}) {
+            for (const Point p : {position(seg.from), position(seg.to)}) {
                 for (const auto& [n, side] : above) {
                     const Node& node = bsp_.nodes[n];
                     const PlanBox& box = node.boxes[side];
@@ -215,30 +216,30 @@ private:
                 }
             }
             if (s.edges != 0) continue;
-            const auto [a, b] = way_of(seg);
-            keep_right(outline, a, b, scratch);
+            const auto [a, b] = ends_of(seg);
+            clip_right(outline, a, b, scratch);
         }
         if (s.edges != 0) {
             outline.clear();
-            for (const Seg& seg : bsp_.edges(s)) outline.push_back(at(seg.from));
+            for (const Seg& seg : bsp_.edges(s)) outline.push_back(position(seg.from));
         }
         if (!outline.empty()) areas_[s.sector] += area_of(outline);
     }
 
     void check_areas() {
         const std::vector<double> by_lines = sector_areas(map_);
-        std::vector<double> wanted(by_lines.size()), found(by_lines.size());
+        std::vector<double> expected(by_lines.size()), found(by_lines.size());
         std::vector<std::uint8_t> open(by_lines.size());
         for (std::uint32_t i = 0; i < by_lines.size(); ++i) {
             out_.open_sectors += by_lines[i] < 0 ? 1 : 0;
-            open[first_of(i)] |= by_lines[i] < 0 ? 1 : 0;
-            wanted[first_of(i)] += by_lines[i];
-            found[first_of(i)] += areas_[i];
+            open[root_of(i)] |= by_lines[i] < 0 ? 1 : 0;
+            expected[root_of(i)] += by_lines[i];
+            found[root_of(i)] += areas_[i];
         }
         for (std::uint32_t i = 0; i < by_lines.size(); ++i) {
-            if (open[i] != 0 || first_of(i) != i) continue;
-            out_.whole_area += wanted[i];
-            const double error = std::abs(found[i] - wanted[i]) / std::max(wanted[i], 1.0);
+            if (open[i] != 0 || root_of(i) != i) continue;
+            out_.total_area += expected[i];
+            const double error = std::abs(found[i] - expected[i]) / std::max(expected[i], 1.0);
             if (error <= out_.area_error) continue;
             out_.area_error = error;
             out_.worst_sector = i;
@@ -248,13 +249,13 @@ private:
 
 }  // namespace
 
-BspCheck check_bsp(const Map& map, const LevelBsp& bsp) { return Checker(map, bsp).work(); }
+BspCheck check_bsp(const Map& map, const LevelBsp& bsp) { return Checker(map, bsp).run(); }
 
 std::vector<double> sector_areas(const Map& map) {
     struct End {
         std::uint32_t sector = 0;
-        Vertex at;
-        int balance = 0;  ///< lines that leave less lines that come
+        Vertex vertex;
+        int balance = 0;  ///< outgoing minus incoming lines
     };
     std::vector<double> areas(map.sectors.size());
     std::vector<End> ends;
@@ -270,7 +271,7 @@ std::vector<double> sector_areas(const Map& map) {
             ends.push_back({sector, b, left ? 1 : -1});
         }
     }
-    const auto key = [](const End& end) { return std::tuple(end.sector, end.at.x, end.at.y); };
+    const auto key = [](const End& end) { return std::tuple(end.sector, end.vertex.x, end.vertex.y); };
     std::sort(ends.begin(), ends.end(), [&](const End& p, const End& q) { return key(p) < key(q); });
     for (std::size_t i = 0; i < ends.size();) {
         int balance = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// How much room there is around a place of a level.
+/// Free space around a point of a level.
 #include <optional>
 #include <span>
 
@@ -7,11 +7,13 @@
 
 namespace fase::level {
 
-/// Where an upright cylinder of `radius` map units around a place stands free: from the highest floor to the lowest
-/// ceiling that it reaches; may be closed. nullopt where it reaches a wall or the outside. O(depth + what is near).
-[[nodiscard]] std::optional<Opening> room_around(const LevelBsp& bsp, const Map& map, Point place, double radius);
+/// Returns the vertical interval in which an upright cylinder of `radius` map units is free: from the highest floor to
+/// the lowest ceiling that it overlaps; can be closed. nullopt if it overlaps a wall or the outside.
+/// O(depth + elements nearby).
+[[nodiscard]] std::optional<Opening> clearance_around(const LevelBsp& bsp, const Map& map, Point centre, double radius);
 
-/// Does a convex row of corners (either way round) overlap any sub-sector by more than `depth` map units?
-[[nodiscard]] bool reaches_inside(const LevelBsp& bsp, std::span<const Point> corners, double depth);
+/// Returns whether a convex polygon (clockwise or counterclockwise) overlaps a sub-sector by more than `depth` map
+/// units.
+[[nodiscard]] bool overlaps_interior(const LevelBsp& bsp, std::span<const Point> corners, double depth);
 
 }  // namespace fase::level

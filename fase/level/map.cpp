@@ -1,4 +1,4 @@
-/// Lumps into arrays, and every index held against what it points into.
+/// Reads lumps into arrays and checks every index.
 #include "fase/level/map.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ std::string name_at(Bytes bytes, std::size_t at) {
     return name;
 }
 
-/// Reads lumps of one map; the first mistake is kept.
+/// Reads lumps of one map; keeps the first error.
 class Reader {
 public:
     Reader(const std::string& file, const Wad& wad, std::size_t marker) : file_(file), wad_(wad), marker_(marker) {}
@@ -25,13 +25,13 @@ public:
     template <class Read> void each(std::string_view lump, std::size_t size, Read&& read) {
         if (error_) return;
         const std::optional<std::size_t> place = wad_.find_in_map(marker_, lump);
-        if (!place) return fail(lump, "found no such lump, need one for each map");
+        if (!place) return fail(lump, "no such lump; expected one in each map");
         const Bytes bytes = wad_.lumps[*place].bytes;
         if (bytes.size() % size != 0)
-            return fail(lump, fmt::format("found {} bytes, need a multiple of {}", bytes.size(), size));
+            return fail(lump, fmt::format("found {} bytes; expected a multiple of {}", bytes.size(), size));
         for (std::size_t at = 0; at < bytes.size(); at += size) read(bytes.subspan(at, size));
     }
-    /// Notes a mistake unless there is one already.
+    /// Stores an error unless there is one already.
     void fail(std::string_view where, std::string problem) {
         if (!error_) {
             error_ = Error{Status::Format,
@@ -40,9 +40,11 @@ public:
                            {}};
         }
     }
-    void hold(std::string_view lump, std::size_t entry, std::string_view what, std::size_t index, std::size_t count) {
+    void check_index(std::string_view lump, std::size_t entry, std::string_view what, std::size_t index,
+                     std::size_t count) {
         if (index < count || error_) return;
-        fail(fmt::format("{}[{}]", lump, entry), fmt::format("found {} {}, need one of the {}", what, index, count));
+        fail(fmt::format("{}[{}]", lump, entry),
+             fmt::format("found {} {}; expected one of the {}", what, index, count));
     }
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 
@@ -55,18 +57,18 @@ private:
 
 void check_references(Reader& reader, const Map& map) {
     for (std::size_t i = 0; i < map.sides.size(); ++i)
-        reader.hold("SIDEDEFS", i, "sector", map.sides[i].sector, map.sectors.size());
+        reader.check_index("SIDEDEFS", i, "sector", map.sides[i].sector, map.sectors.size());
     for (std::size_t i = 0; i < map.lines.size() && !reader.error(); ++i) {
         const Line& line = map.lines[i];
-        reader.hold("LINEDEFS", i, "vertex", line.from, map.vertices.size());
-        reader.hold("LINEDEFS", i, "vertex", line.to, map.vertices.size());
-        if (line.right != no_side) reader.hold("LINEDEFS", i, "side", line.right, map.sides.size());
-        if (line.left != no_side) reader.hold("LINEDEFS", i, "side", line.left, map.sides.size());
+        reader.check_index("LINEDEFS", i, "vertex", line.from, map.vertices.size());
+        reader.check_index("LINEDEFS", i, "vertex", line.to, map.vertices.size());
+        if (line.right != no_side) reader.check_index("LINEDEFS", i, "side", line.right, map.sides.size());
+        if (line.left != no_side) reader.check_index("LINEDEFS", i, "side", line.left, map.sides.size());
         if (reader.error()) return;
         const std::string entry = fmt::format("LINEDEFS[{}]", i);
-        if (line.right == no_side) reader.fail(entry, "found a line without a right side, need one");
+        if (line.right == no_side) reader.fail(entry, "found a line without a right side; expected one");
         if (map.vertices[line.from] == map.vertices[line.to])
-            reader.fail(entry, "found a line of zero length, need two corners that differ");
+            reader.fail(entry, "found a line of zero length; expected two different corners");
     }
 }
 
@@ -79,7 +81,7 @@ Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view m
         for (const std::size_t m : wad.map_markers()) known += (known.empty() ? "" : ", ") + wad.lumps[m].name;
         return Error{Status::BadArgument,
                      name,
-                     fmt::format("found no map \"{}\", need one of {}", map_name, known.empty() ? "none" : known),
+                     fmt::format("no map \"{}\"; expected one of {}", map_name, known.empty() ? "none" : known),
                      {}};
     }
     Map map;
@@ -87,7 +89,7 @@ Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view m
     if (wad.find_in_map(*marker, "TEXTMAP") || wad.find_in_map(*marker, "BEHAVIOR")) {
         return Error{Status::Unsupported,
                      fmt::format("{}: {}", name, map.name),
-                     "found a map in the format of Hexen or as text, need Doom's own",
+                     "found a map in the format of Hexen or as text; expected Doom's own",
                      {}};
     }
     Reader reader(name, wad, *marker);
@@ -109,7 +111,9 @@ Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view m
     });
     check_references(reader, map);
     if (reader.error()) return *reader.error();
-    if (map.lines.empty()) return Error{Status::Format, fmt::format("{}: {}", name, map.name), "found no lines", {}};
+    if (map.lines.empty())
+        return Error{
+            Status::Format, fmt::format("{}: {}", name, map.name), "found no lines; expected at least one", {}};
     return map;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// One map of a WAD as it was drawn: vertices, lines, sides, sectors, things.
+/// One map of a WAD as its designer drew it: vertices, lines, sides, sectors, things.
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,21 +15,22 @@ struct Vertex {
     friend constexpr bool operator==(Vertex, Vertex) = default;
 };
 
-/// No side, as the format writes it.
+/// The format's value for "no side".
 inline constexpr std::uint16_t no_side = 0xffff;
 
-/// A wall, or a border between two sectors, from one vertex to another; its right side looks to the right of the way.
+/// A wall, or a border between two sectors, from one vertex to another; its right side faces the right of that
+/// direction.
 struct Line {
     std::uint16_t from = 0, to = 0;  ///< vertices
     std::uint16_t flags = 0, special = 0, tag = 0;
     std::uint16_t right = no_side, left = no_side;  ///< sides
-    /// Bit of `flags`: nothing walks through.
+    /// Bit of `flags`: players and monsters cannot cross the line.
     static constexpr std::uint16_t blocks = 1;
-    /// Bit of `flags`: what is drawn through it is seen, for it has two sides.
+    /// Bit of `flags`: the line has two sides and is transparent.
     static constexpr std::uint16_t two_sided = 4;
 };
 
-/// What is seen on one side of a line, and the sector that it belongs to.
+/// The textures on one side of a line, and the sector to which it belongs.
 struct Side {
     std::int16_t x_offset = 0, y_offset = 0;
     std::string upper, lower, middle;  ///< names of textures; "-": none
@@ -50,7 +51,7 @@ struct Thing {
     std::uint16_t type = 0, flags = 0;
 };
 
-/// A map whose references were all found good.
+/// A map with valid references.
 struct Map {
     std::string name;
     std::vector<Vertex> vertices;
@@ -60,10 +61,10 @@ struct Map {
     std::vector<Thing> things;
 };
 
-/// Reads the lumps of a map in Doom's own format. `name` is the file, for errors. Format, naming lump and entry: sizes
-/// that are no multiple of an entry's, a vertex, side or sector that does not exist, a line of zero length or without a
-/// right side. Unsupported: maps in Hexen's format or as text. BadArgument when there is no such map; tells which there
-/// are.
+/// Reads the lumps of a map in Doom's own format. `name` is the file, for errors.
+/// Errors: Format, with lump and entry, for a lump size that is not a multiple of the entry size, a vertex, side or
+/// sector that does not exist, a line of zero length or without a right side. Unsupported for maps in Hexen's format or
+/// as text. BadArgument if there is no such map; the message lists the maps of the file.
 /// Source of the format: Fell and others 1994, The unofficial Doom specs, chapter 4.
 Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view map);
 

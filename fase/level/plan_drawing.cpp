@@ -1,4 +1,4 @@
-/// The plan layer by layer: tints, partition lines, walls, the eye, the legend.
+/// Draws the plan in layers: tints, partition lines, walls, the eye, the legend.
 #include "fase/level/plan_drawing.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ constexpr std::array<Colour, 12> tints{{{214, 232, 247, 255},
                                         {219, 236, 225, 255},
                                         {238, 231, 220, 255}}};
 
-/// Red, orange, green, blue, violet from 0 to 1.
+/// Returns a colour between red (0), orange, green, blue and violet (1).
 Colour ramp(double t) {
     constexpr std::array<Colour, 6> stops{{{214, 28, 44, 255},
                                            {240, 130, 20, 255},
@@ -45,7 +45,7 @@ Colour ramp(double t) {
             mix(stops[k].blue, stops[k + 1].blue), 255};
 }
 
-/// A stretch of a partition line.
+/// A piece of a partition line.
 struct Chord {
     Point a, b;
     std::size_t depth = 0;
@@ -59,7 +59,7 @@ double left_of(const Node& node, Point p) {
 /// Draws one plan.
 class Plan {
 public:
-    Plan(const Map& map, const LevelBsp& bsp, const PlanLook& look) : map_(map), bsp_(bsp), look_(look) {
+    Plan(const Map& map, const LevelBsp& bsp, const PlanOptions& options) : map_(map), bsp_(bsp), options_(options) {
         for (const Line& line : map.lines)
             for (const std::uint16_t v : {line.from, line.to}) plan_.add(bsp.vertices[v]);
         const double across = std::max(plan_.hi.x - plan_.lo.x, 1.0), up = std::max(plan_.hi.y - plan_.lo.y, 1.0);
@@ -81,43 +81,43 @@ public:
 private:
     const Map& map_;
     const LevelBsp& bsp_;
-    const PlanLook& look_;
+    const PlanOptions& options_;
     PlanBox plan_;
     double scale_ = 1, shift_x_ = 0;
     Drawing drawing_;
-    std::vector<Chord> between_;  ///< where one walks from sub-sector to sub-sector
-    std::vector<Chord> across_;   ///< the first partition lines, through their whole cells
+    std::vector<Chord> between_;  ///< open borders between sub-sectors
+    std::vector<Chord> across_;   ///< the first partition lines, over their entire cells
 
     [[nodiscard]] Point place(Point p) const {
         return {shift_x_ + (p.x - plan_.lo.x) * scale_, head + edge + (plan_.hi.y - p.y) * scale_};
     }
     [[nodiscard]] Point corner(std::uint32_t vertex) const { return place(bsp_.vertices[vertex]); }
 
-    /// Goes down the tree with the nodes above, to see which of them made which miniseg.
+    /// Traverses the tree to find the node of each miniseg.
     void walk() {
         struct Step {
             std::uint32_t child = 0;
             std::size_t depth = 0;
         };
-        std::vector<Step> to_do{{bsp_.root(), 0}};
+        std::vector<Step> stack{{bsp_.root(), 0}};
         std::vector<std::uint32_t> above;
-        while (!to_do.empty()) {
-            const Step at = to_do.back();
-            to_do.pop_back();
-            above.resize(at.depth);
-            const std::uint32_t index = at.child & ~Node::leaf_bit;
-            if ((at.child & Node::leaf_bit) != 0) {
+        while (!stack.empty()) {
+            const Step current = stack.back();
+            stack.pop_back();
+            above.resize(current.depth);
+            const std::uint32_t index = current.child & ~Node::leaf_bit;
+            if ((current.child & Node::leaf_bit) != 0) {
                 find_minisegs(bsp_.sub_sectors[index], above);
                 continue;
             }
-            if (at.depth < 4) add_across(index, above);
+            if (current.depth < 4) add_across(index, above);
             above.push_back(index);
-            for (const std::uint32_t child : bsp_.nodes[index].children) to_do.push_back({child, at.depth + 1});
+            for (const std::uint32_t child : bsp_.nodes[index].children) stack.push_back({child, current.depth + 1});
         }
     }
     void find_minisegs(const SubSector& s, const std::vector<std::uint32_t>& above) {
         for (const Seg& seg : bsp_.edges(s)) {
-            if (seg.line != no_line || seg.from > seg.to) continue;  // one of two partners will do
+            if (seg.line != no_index || seg.from > seg.to) continue;  // one of two partners is enough
             const Point a = bsp_.vertices[seg.from], b = bsp_.vertices[seg.to];
             for (std::size_t depth = 0; depth < above.size(); ++depth) {
                 const Node& node = bsp_.nodes[above[depth]];
@@ -127,25 +127,25 @@ private:
             }
         }
     }
-    /// The node's line between the lines of the nodes above, and within its box.
+    /// Adds the part of the node's line inside its cell and the box of the plan.
     void add_across(std::uint32_t index, const std::vector<std::uint32_t>& above) {
         const Node& node = bsp_.nodes[index];
         double from = -1e9, to = 1e9;
-        const auto keep = [&](double at_origin, double a_step) {  // where at_origin + t * a_step is below 0
-            if (a_step > 0) to = std::min(to, -at_origin / a_step);
-            if (a_step < 0) from = std::max(from, -at_origin / a_step);
+        const auto clip = [&](double at_origin, double slope) {  // to the t for which at_origin + t * slope is below 0
+            if (slope > 0) to = std::min(to, -at_origin / slope);
+            if (slope < 0) from = std::max(from, -at_origin / slope);
         };
         const Point origin{double(node.x), double(node.y)};
         const double dx = node.dx, dy = node.dy;
-        keep(plan_.lo.x - origin.x, -dx);
-        keep(origin.x - plan_.hi.x, dx);
-        keep(plan_.lo.y - origin.y, -dy);
-        keep(origin.y - plan_.hi.y, dy);
+        clip(plan_.lo.x - origin.x, -dx);
+        clip(origin.x - plan_.hi.x, dx);
+        clip(plan_.lo.y - origin.y, -dy);
+        clip(origin.y - plan_.hi.y, dy);
         std::uint32_t below = index;
         for (std::size_t k = above.size(); k-- > 0;) {
             const Node& other = bsp_.nodes[above[k]];
             const double sign = other.children[0] == below ? 1 : -1;
-            keep(sign * side_value(other, origin), sign * (other.dx * dy - other.dy * dx));
+            clip(sign * side_value(other, origin), sign * (other.dx * dy - other.dy * dx));
             below = above[k];
         }
         if (from >= to) return;
@@ -165,9 +165,9 @@ private:
         std::stable_sort(by_tint.begin(), by_tint.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return tint_of(a) < tint_of(b); });
         for (const std::uint32_t s : by_tint) drawing_.polygon(outline(bsp_.sub_sectors[s]), tints[tint_of(s)]);
-        for (const std::uint32_t s : look_.seen)
+        for (const std::uint32_t s : options_.seen)
             if (s < bsp_.sub_sectors.size()) drawing_.polygon(outline(bsp_.sub_sectors[s]), lit);
-        for (const std::vector<Point>& polygon : look_.sight) {
+        for (const std::vector<Point>& polygon : options_.sight) {
             std::vector<Point> corners;
             for (const Point p : polygon) corners.push_back(place(p));
             drawing_.polygon(std::move(corners), bright);
@@ -209,19 +209,19 @@ private:
         }
     }
     void draw_eye() {
-        if (!look_.eye) return;
+        if (!options_.eye) return;
         std::uint32_t child = bsp_.root();
         while ((child & Node::leaf_bit) == 0)
-            child = bsp_.nodes[child].children[side_of(bsp_.nodes[child], *look_.eye)];
+            child = bsp_.nodes[child].children[side_of(bsp_.nodes[child], *options_.eye)];
         for (const Seg& seg : bsp_.edges(bsp_.sub_sectors[child & ~Node::leaf_bit]))
             drawing_.line({corner(seg.from), corner(seg.to)}, 2, here);
-        const Point eye = place(*look_.eye);
+        const Point eye = place(*options_.eye);
         constexpr double r = 5;
         drawing_.polygon({{eye.x - r, eye.y}, {eye.x, eye.y - r}, {eye.x + r, eye.y}, {eye.x, eye.y + r}}, here);
     }
     void draw_legend() {
-        drawing_.text({edge, 30}, 12, look_.title, ink);
-        drawing_.text({edge + 12 * 1.15 * static_cast<double>(look_.title.size()) + 16, 30}, 8, look_.note, grey);
+        drawing_.text({edge, 30}, 12, options_.title, ink);
+        drawing_.text({edge + 12 * 1.15 * static_cast<double>(options_.title.size()) + 16, 30}, 8, options_.note, grey);
         const double y = drawing_.height - foot / 2;
         double x = edge;
         drawing_.text({x, y + 4}, 8, "partition lines by depth: 0", grey);
@@ -248,6 +248,8 @@ private:
 
 }  // namespace
 
-Drawing draw_plan(const Map& map, const LevelBsp& bsp, const PlanLook& look) { return Plan(map, bsp, look).draw(); }
+Drawing draw_plan(const Map& map, const LevelBsp& bsp, const PlanOptions& options) {
+    return Plan(map, bsp, options).draw();
+}
 
 }  // namespace fase::level

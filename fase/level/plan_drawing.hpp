@@ -1,5 +1,5 @@
 #pragma once
-/// The plan of a compiled level, drawn.
+/// Draws the plan of a compiled level.
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,17 +9,18 @@
 
 namespace fase::level {
 
-/// What is shown beside the plan itself.
-struct PlanLook {
+/// Optional content of a plan.
+struct PlanOptions {
     std::string title;                      ///< in the upper left corner
-    std::string note;                       ///< behind it, smaller
-    std::optional<Point> eye;               ///< marked, with the sub-sector that it is in
-    std::vector<std::uint32_t> seen;        ///< sub-sectors that are lit
-    std::vector<std::vector<Point>> sight;  ///< polygons on the plan that are lit more
+    std::string note;                       ///< after the title, smaller
+    std::optional<Point> eye;               ///< marked, together with its sub-sector
+    std::vector<std::uint32_t> seen;        ///< highlighted sub-sectors
+    std::vector<std::vector<Point>> sight;  ///< polygons on the plan, highlighted more strongly
 };
 
-/// Walls dark, borders between sectors pale, sub-sectors tinted by their sector, partition lines from red (the root) to
-/// violet (the deepest) where they part sub-sectors, the first four right across; a legend below.
-[[nodiscard]] Drawing draw_plan(const Map& map, const LevelBsp& bsp, const PlanLook& look);
+/// Draws walls dark, borders between sectors pale, sub-sectors in a tint of their sector, and partition lines from red
+/// (the root) to violet (the deepest) where they separate sub-sectors; the first four over their entire cells. A legend
+/// is at the bottom.
+[[nodiscard]] Drawing draw_plan(const Map& map, const LevelBsp& bsp, const PlanOptions& options);
 
 }  // namespace fase::level

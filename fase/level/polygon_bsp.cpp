@@ -1,4 +1,4 @@
-/// Walks through the tree: where a point lies, what a ray meets, what hides what.
+/// Traverses the tree: point location, ray casts, front-to-back order.
 #include "fase/level/polygon_bsp.hpp"
 
 #include <algorithm>
@@ -10,27 +10,27 @@
 namespace fase::level {
 namespace {
 
-constexpr std::size_t usual_depth = 160;
+constexpr std::size_t stack_depth = 160;
 
 double side(const PolygonBsp::CutPlane& plane, Vec3d point) { return dot(plane.normal, point) - plane.offset; }
 
-/// Stretch of a ray, metres.
-struct Stretch {
+/// An interval of a ray, in metres.
+struct Interval {
     double from = 0, to = 0;
     [[nodiscard]] bool empty() const { return !(from <= to); }
 };
 
-/// The part of a stretch on which s + r * at is at least `low`.
-Stretch at_least(double low, double s, double r, Stretch part) {
-    if (r == 0) return s >= low ? part : Stretch{1, 0};
-    const double at = (low - s) / r;
-    if (r > 0) return {std::max(part.from, at), part.to};
-    return {part.from, std::min(part.to, at)};
+/// Clips an interval to the values t for which s + r * t is at least `low`.
+Interval at_least(double low, double s, double r, Interval part) {
+    if (r == 0) return s >= low ? part : Interval{1, 0};
+    const double t = (low - s) / r;
+    if (r > 0) return {std::max(part.from, t), part.to};
+    return {part.from, std::min(part.to, t)};
 }
 
-/// The part of a ray within a box.
-Stretch within(Vec3d origin, Vec3d direction, Vec3d lo, Vec3d hi, double most) {
-    Stretch part{0, most};
+/// Returns the part of a ray inside a box.
+Interval within(Vec3d origin, Vec3d direction, Vec3d lo, Vec3d hi, double max_distance) {
+    Interval part{0, max_distance};
     for (int axis = 0; axis < 3; ++axis) {
         part = at_least(lo[axis], origin[axis], direction[axis], part);
         part = at_least(-hi[axis], -origin[axis], -direction[axis], part);
@@ -42,62 +42,61 @@ Stretch within(Vec3d origin, Vec3d direction, Vec3d lo, Vec3d hi, double most) {
 }  // namespace
 
 std::uint32_t PolygonBsp::leaf_at(Vec3d point) const {
-    std::uint32_t at = nodes_.empty() ? Node::leaf_bit : 0;
-    while ((at & Node::leaf_bit) == 0) at = nodes_[at].children[side(nodes_[at].plane, point) >= 0 ? 1 : 0];
-    return at & ~Node::leaf_bit;
+    std::uint32_t child = nodes_.empty() ? Node::leaf_bit : 0;
+    while ((child & Node::leaf_bit) == 0) child = nodes_[child].children[side(nodes_[child].plane, point) >= 0 ? 1 : 0];
+    return child & ~Node::leaf_bit;
 }
 
-bool PolygonBsp::solid(Vec3d point) const {
+bool PolygonBsp::is_solid(Vec3d point) const {
     if (!is_finite(point)) return false;
     for (int axis = 0; axis < 3; ++axis)
-        if (point[axis] < lo_[axis] || point[axis] > hi_[axis]) return !rim_.empty() && winding(point) != 0;
+        if (point[axis] < lo_[axis] || point[axis] > hi_[axis]) return !boundary_.empty() && winding(point) != 0;
     const Leaf& leaf = leaves_[leaf_at(point)];
     if (leaf.inside == Inside::Mixed) return winding(point) != 0;
     return leaf.inside == Inside::Solid;
 }
 
-template <class Test> void PolygonBsp::walk_ray(Vec3d origin, Vec3d direction, double most, Test&& test) const {
-    const double reach = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
-    const double slack = 4 * thickness_ + reach * 0x1p-46;
-    const Vec3d grown{slack, slack, slack};
-    const Stretch all = within(origin, direction, lo_ - grown, hi_ + grown, most);
+template <class Test> void PolygonBsp::walk_ray(Vec3d origin, Vec3d direction, double max_distance, Test&& test) const {
+    const double extent = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+    const double slack = 4 * thickness_ + extent * 0x1p-46;
+    const Vec3d margin{slack, slack, slack};
+    const Interval all = within(origin, direction, lo_ - margin, hi_ + margin, max_distance);
     if (all.empty()) return;
     const Vec3d start = origin + direction * all.from;
 
     struct Task {
-        std::uint32_t at;
-        Stretch part;
+        std::uint32_t child;
+        Interval part;
     };
-    broad::LocalStack<Task, usual_depth> later;
+    broad::LocalStack<Task, stack_depth> stack;
     const double length = all.to - all.from;
     double farthest = length;  // from `start`
     const auto test_all = [&](std::uint32_t first, std::uint32_t count) {
         for (std::uint32_t i = first; i < first + count; ++i)
             farthest = std::min(farthest, test(pieces_[lists_[i]].triangle) - all.from);
     };
-    later.push({nodes_.empty() ? Node::leaf_bit : 0, {0, length}});
-    while (!later.empty()) {
-        Task task = later.pop();
+    stack.push({nodes_.empty() ? Node::leaf_bit : 0, {0, length}});
+    while (!stack.empty()) {
+        Task task = stack.pop();
         while (task.part.from <= farthest) {
-            if ((task.at & Node::leaf_bit) != 0) {
-                const Leaf& leaf = leaves_[task.at & ~Node::leaf_bit];
+            if ((task.child & Node::leaf_bit) != 0) {
+                const Leaf& leaf = leaves_[task.child & ~Node::leaf_bit];
                 test_all(leaf.first, leaf.pieces);
                 break;
             }
-            const Node& node = nodes_[task.at];
+            const Node& node = nodes_[task.child];
             const double s = side(node.plane, start), r = dot(node.plane.normal, direction);
-            const Stretch before = at_least(-slack, s, r, task.part), behind = at_least(-slack, -s, -r, task.part);
-            if (!before.empty() && !behind.empty()) {
-                // One of the bounds of either is where the ray enters or leaves the slab around the plane.
-                if (std::max(before.from, behind.from) <= std::min(before.to, behind.to))
-                    test_all(node.first, node.pieces);
-                const bool near_is_before = s + r * task.part.from >= 0;
-                later.push(near_is_before ? Task{node.children[0], behind} : Task{node.children[1], before});
-                task = near_is_before ? Task{node.children[1], before} : Task{node.children[0], behind};
-            } else if (!before.empty()) {
-                task = {node.children[1], before};
-            } else if (!behind.empty()) {
-                task = {node.children[0], behind};
+            const Interval front = at_least(-slack, s, r, task.part), back = at_least(-slack, -s, -r, task.part);
+            if (!front.empty() && !back.empty()) {
+                // The intervals overlap where the ray is inside the slab around the plane.
+                if (std::max(front.from, back.from) <= std::min(front.to, back.to)) test_all(node.first, node.pieces);
+                const bool near_is_front = s + r * task.part.from >= 0;
+                stack.push(near_is_front ? Task{node.children[0], back} : Task{node.children[1], front});
+                task = near_is_front ? Task{node.children[1], front} : Task{node.children[0], back};
+            } else if (!front.empty()) {
+                task = {node.children[1], front};
+            } else if (!back.empty()) {
+                task = {node.children[0], back};
             } else {
                 break;
             }
@@ -112,66 +111,67 @@ std::optional<PolygonHit> PolygonBsp::cast_ray(const Ray& ray) const {
     auto farthest = double(ray.length);
     walk_ray(ray.origin, direction, farthest, [&](std::uint32_t triangle) {
         const auto hit = ray_triangle(ray.origin, direction, corners_of(mesh_, triangle));
-        if (!hit || hit->at > farthest) return farthest;
-        if (!nearest || hit->at < nearest->at || triangle < nearest->triangle) nearest = {triangle, hit->at};
-        return farthest = hit->at;
+        if (!hit || hit->distance > farthest) return farthest;
+        if (!nearest || hit->distance < nearest->distance || triangle < nearest->triangle)
+            nearest = {triangle, hit->distance};
+        return farthest = hit->distance;
     });
     return nearest;
 }
 
 int PolygonBsp::winding(Vec3d point) const {
-    // Any ray counts the way out, unless it passes too near an edge to tell.
-    constexpr Vec3d ways[] = {{5, 7, 4}, {-6, 3, 7}, {3, -9, 2}};
-    std::vector<std::uint32_t> met;
-    for (const Vec3d& any_way : ways) {
-        const Vec3d way = normalized(any_way);
+    // Any ray gives the winding number, unless it passes too close to an edge or is almost parallel to a triangle.
+    constexpr Vec3d directions[] = {{5, 7, 4}, {-6, 3, 7}, {3, -9, 2}};
+    std::vector<std::uint32_t> triangles;
+    for (const Vec3d& candidate : directions) {
+        const Vec3d direction = normalized(candidate);
         int sum = 0;
-        bool clear = true;
-        met.clear();
-        walk_ray(point, way, std::numeric_limits<double>::max(), [&](std::uint32_t triangle) {
-            met.push_back(triangle);
+        bool reliable = true;
+        triangles.clear();
+        walk_ray(point, direction, std::numeric_limits<double>::max(), [&](std::uint32_t triangle) {
+            triangles.push_back(triangle);
             return std::numeric_limits<double>::infinity();
         });
-        std::sort(met.begin(), met.end());
-        met.erase(std::unique(met.begin(), met.end()), met.end());
-        for (const std::uint32_t triangle : met) {
+        std::sort(triangles.begin(), triangles.end());
+        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+        for (const std::uint32_t triangle : triangles) {
             const TriangleCorners corners = corners_of(mesh_, triangle);
-            const auto hit = ray_triangle(point, way, corners);
+            const auto hit = ray_triangle(point, direction, corners);
             if (!hit) continue;
             const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-            const double facing = dot(normal, way);
-            clear = clear && hit->margin > 1e-6 && facing * facing > 1e-6 * length_squared(normal);
+            const double facing = dot(normal, direction);
+            reliable = reliable && hit->margin > 1e-6 && facing * facing > 1e-6 * length_squared(normal);
             sum += hit->into ? -1 : 1;
         }
-        if (clear) return sum + rim_winding(rim_, point, -way);
+        if (reliable) return sum + boundary_winding(boundary_, point, -direction);
     }
     return winding_number(mesh_, point);
 }
 
-void PolygonBsp::front_to_back(Vec3d eye, FunctionRef<bool(const PolygonSight&)> visit) const {
-    // A task with `own` set is the pieces of a node, between its near and its far side.
+void PolygonBsp::front_to_back(Vec3d eye, FunctionRef<bool(const PolygonVisit&)> visit) const {
+    // A task with `own` set visits the pieces of a node, between its near and its far side.
     struct Task {
-        std::uint32_t at;
+        std::uint32_t child;
         bool own;
     };
-    broad::LocalStack<Task, 2 * usual_depth> later;
-    later.push({nodes_.empty() ? Node::leaf_bit : 0, false});
-    while (!later.empty()) {
-        const Task task = later.pop();
-        if ((task.at & Node::leaf_bit) != 0) {
-            const Leaf& leaf = leaves_[task.at & ~Node::leaf_bit];
+    broad::LocalStack<Task, 2 * stack_depth> stack;
+    stack.push({nodes_.empty() ? Node::leaf_bit : 0, false});
+    while (!stack.empty()) {
+        const Task task = stack.pop();
+        if ((task.child & Node::leaf_bit) != 0) {
+            const Leaf& leaf = leaves_[task.child & ~Node::leaf_bit];
             if (!visit({{lists_.data() + leaf.first, leaf.pieces}, true, leaf.inside == Inside::Solid})) return;
             continue;
         }
-        const Node& node = nodes_[task.at];
+        const Node& node = nodes_[task.child];
         if (task.own) {
             if (node.pieces > 0 && !visit({{lists_.data() + node.first, node.pieces}, false, false})) return;
             continue;
         }
         const int near = side(node.plane, eye) >= 0 ? 1 : 0;
-        later.push({node.children[1 - near], false});
-        later.push({task.at, true});
-        later.push({node.children[near], false});
+        stack.push({node.children[1 - near], false});
+        stack.push({task.child, true});
+        stack.push({node.children[near], false});
     }
 }
 

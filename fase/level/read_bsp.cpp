@@ -1,4 +1,4 @@
-/// Lumps of a compiled map into one form, and every index held against what it points into.
+/// Reads lumps of all formats into one form and checks every index.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-/// Reads numbers one after the other; behind the end all are 0 and `failed` is set.
+/// Reads numbers sequentially; after the end, all are 0 and failed() is true.
 class Cursor {
 public:
     explicit Cursor(Bytes bytes) : bytes_(bytes) {}
@@ -37,7 +37,7 @@ private:
     bool failed_ = false;
 };
 
-/// One tree on its way out of lumps; the first mistake is kept.
+/// Reads one tree; keeps the first error.
 class TreeReader {
 public:
     TreeReader(const std::string& file, const Wad& wad, std::size_t marker, const Map& map)
@@ -56,7 +56,7 @@ public:
         } else if (magic == "ZNOD" || magic == "ZGLN" || magic == "XGL2" || magic == "XGL3") {
             return Error{Status::Unsupported,
                          fmt::format("{} {}", where_, extended),
-                         fmt::format("found nodes of the kind {}, need classic ones, XNOD or XGLN", magic),
+                         fmt::format("found nodes of the kind {}; expected classic nodes, XNOD or XGLN", magic),
                          {}};
         } else if (gl) {
             read_gl();
@@ -65,7 +65,7 @@ public:
         }
         if (!error_) check();
         if (error_) return *error_;
-        count();
+        count_stats();
         return std::move(out_);
     }
 
@@ -85,14 +85,14 @@ private:
     void fail(std::string_view place, std::string problem) {
         if (!error_) error_ = Error{Status::Format, fmt::format("{} {}", where_, place), std::move(problem), {}};
     }
-    /// The entries of a lump, `size` bytes each.
+    /// Calls read(cursor) for each entry of a lump, `size` bytes each.
     template <class Read>
     void each(std::string_view name, std::optional<std::size_t> lump, std::size_t size, Read&& read) {
         if (error_) return;
-        if (!lump) return fail(name, "found no such lump, need one");
+        if (!lump) return fail(name, "no such lump; expected one");
         const Bytes bytes = wad_.lumps[*lump].bytes;
         if (bytes.size() % size != 0)
-            return fail(name, fmt::format("found {} bytes, need a multiple of {}", bytes.size(), size));
+            return fail(name, fmt::format("found {} bytes; expected a multiple of {}", bytes.size(), size));
         for (Cursor in(bytes); in.left() > 0;) read(in);
     }
 
@@ -121,7 +121,7 @@ private:
             Seg& seg = out_.segs.emplace_back();
             seg.from = in.number(2);
             seg.to = in.number(2);
-            in.number(2);  // the angle: the line's
+            in.number(2);  // the angle: follows from the line
             seg.line = in.number(2);
             seg.left = in.number(2) != 0;
             seg.offset = in.number(2);
@@ -138,15 +138,15 @@ private:
     void read_gl() {
         const std::size_t gl_marker = marker_ + 1 + wad_.lumps_of_map(marker_);
         if (gl_marker >= wad_.lumps.size() || wad_.lumps[gl_marker].name != "GL_" + map_.name)
-            return fail("GL nodes", fmt::format("found no lump GL_{} behind the map, need one", map_.name));
+            return fail("GL nodes", fmt::format("no lump GL_{} after the map; expected one", map_.name));
         const auto vertices = gl_lump(gl_marker, "GL_VERT");
-        if (!vertices) return fail("GL_VERT", "found no such lump, need one");
+        if (!vertices) return fail("GL_VERT", "no such lump; expected one");
         const Bytes bytes = wad_.lumps[*vertices].bytes;
         const std::string magic = magic_of(bytes);
         if (magic != "gNd2" && magic != "gNd5")
-            return fail("GL_VERT", "found GL nodes of another version, need 2 or 5");
+            return fail("GL_VERT", "found GL nodes of another version; expected 2 or 5");
         if (bytes.size() % 8 != 4)
-            return fail("GL_VERT", fmt::format("found {} bytes, need 4 and 8 a vertex", bytes.size()));
+            return fail("GL_VERT", fmt::format("found {} bytes; expected 4, and 8 per vertex", bytes.size()));
         for (Cursor in(bytes.subspan(4)); in.left() > 0;) {
             const double x = in.fixed();
             out_.vertices.push_back({x, in.fixed()});
@@ -161,21 +161,21 @@ private:
                 if ((*v & flag) != 0) *v = (*v & ~flag) + static_cast<std::uint32_t>(out_.map_vertices);
             }
             const std::uint32_t line = in.number(2);
-            seg.line = line == 0xffff ? no_line : line;
-            seg.left = in.number(2) != 0 && seg.line != no_line;
+            seg.line = line == 0xffff ? no_index : line;
+            seg.left = in.number(2) != 0 && seg.line != no_index;
             seg.partner = in.number(size);
-            if (seg.partner == none) seg.partner = no_seg;
+            if (seg.partner == none) seg.partner = no_index;
         });
         each("GL_SSECT", gl_lump(gl_marker, "GL_SSECT"), 2 * size,
              [&](Cursor& in) { read_sub_sector(in, size, true); });
         each("GL_NODES", gl_lump(gl_marker, "GL_NODES"), 24 + 2 * size, [&](Cursor& in) { read_node(in, wide); });
     }
 
-    /// Whether `count` entries of `size` bytes are there.
+    /// Returns whether `count` entries of `size` bytes are left; fails if not.
     bool holds(std::string_view lump, const Cursor& in, std::size_t count, std::size_t size, std::string_view what) {
         if (!error_ && (in.failed() || count > in.left() / size))
             fail(fmt::format("{}:{}", lump, in.at()),
-                 fmt::format("found {} {}, need them inside the lump ({} bytes left)", count, what, in.left()));
+                 fmt::format("found {} {}; expected them inside the lump ({} bytes left)", count, what, in.left()));
         return !error_;
     }
     void read_extended(std::string_view lump, Bytes bytes, bool gl) {
@@ -183,7 +183,7 @@ private:
         const std::uint32_t of_map = in.number(4), cuts = in.number(4);
         if (of_map > out_.vertices.size())
             return fail(lump,
-                        fmt::format("found {} vertices of the map, need at most {}", of_map, out_.vertices.size()));
+                        fmt::format("found {} vertices of the map; expected at most {}", of_map, out_.vertices.size()));
         out_.vertices.resize(of_map);
         out_.map_vertices = of_map;
         if (!holds(lump, in, cuts, 8, "vertices")) return;
@@ -208,34 +208,35 @@ private:
             seg.from = in.number(4);
             (gl ? seg.partner : seg.to) = in.number(4);
             const std::uint32_t line = in.number(2);
-            seg.line = line == 0xffff && gl ? no_line : line;
-            seg.left = in.number(1) != 0 && seg.line != no_line;
+            seg.line = line == 0xffff && gl ? no_index : line;
+            seg.left = in.number(1) != 0 && seg.line != no_index;
         }
         const std::uint32_t nodes = in.number(4);
         if (!holds(lump, in, nodes, 32, "nodes")) return;
         for (std::uint32_t n = 0; n < nodes; ++n) read_node(in, true);
         if (!gl) return;
         for (const SubSector& s : out_.sub_sectors) {
-            if (s.first + std::uint64_t{s.edges} > segs) return;  // check() tells
+            if (s.first + std::uint64_t{s.edges} > segs) return;  // check() reports it
             for (std::uint32_t i = 0; i < s.edges; ++i)
                 out_.segs[s.first + i].to = out_.segs[s.first + (i + 1) % s.edges].from;
         }
     }
 
-    void hold(std::string_view kind, std::size_t entry, std::string_view what, std::size_t index, std::size_t count) {
+    void check_index(std::string_view kind, std::size_t entry, std::string_view what, std::size_t index,
+                     std::size_t count) {
         if (index >= count && !error_)
             fail(fmt::format("{}[{}]", kind, entry),
-                 fmt::format("found {} {}, need one of the {}", what, index, count));
+                 fmt::format("found {} {}; expected one of the {}", what, index, count));
     }
     void check() {
-        if (out_.sub_sectors.empty()) return fail("sub-sectors", "found none, need one");
+        if (out_.sub_sectors.empty()) return fail("sub-sectors", "found none; expected at least one");
         for (std::size_t i = 0; i < out_.segs.size() && !error_; ++i) {
             const Seg& seg = out_.segs[i];
-            hold("segs", i, "vertex", seg.from, out_.vertices.size());
-            hold("segs", i, "vertex", seg.to, out_.vertices.size());
-            if (seg.partner != no_seg) hold("segs", i, "partner", seg.partner, out_.segs.size());
-            if (seg.line == no_line) continue;
-            hold("segs", i, "line", seg.line, map_.lines.size());
+            check_index("segs", i, "vertex", seg.from, out_.vertices.size());
+            check_index("segs", i, "vertex", seg.to, out_.vertices.size());
+            if (seg.partner != no_index) check_index("segs", i, "partner", seg.partner, out_.segs.size());
+            if (seg.line == no_index) continue;
+            check_index("segs", i, "line", seg.line, map_.lines.size());
             if (error_) return;
             const Line& line = map_.lines[seg.line];
             if ((seg.left ? line.left : line.right) == no_side)
@@ -245,44 +246,45 @@ private:
         if (!error_) check_tree();
     }
     void check_ranges() {
-        std::vector<std::uint8_t> taken(out_.segs.size());
+        std::vector<std::uint8_t> used(out_.segs.size());
         for (std::size_t s = 0; s < out_.sub_sectors.size(); ++s) {
             SubSector& placed = out_.sub_sectors[s];
             const std::uint64_t size = std::uint64_t{placed.edges} + placed.outliers;
             if (placed.first + size > out_.segs.size()) {
                 return fail(fmt::format("sub-sectors[{}]", s),
-                            fmt::format("found segs {} to {}, need them among the {}", placed.first,
+                            fmt::format("found segs {} to {}; expected them among the {}", placed.first,
                                         placed.first + size, out_.segs.size()));
             }
-            if (size == 0) return fail(fmt::format("sub-sectors[{}]", s), "found no segs, need one");
+            if (size == 0) return fail(fmt::format("sub-sectors[{}]", s), "found no segs; expected at least one");
             for (std::uint64_t i = placed.first; i < placed.first + size; ++i) {
-                if (taken[i] != 0)
-                    return fail(fmt::format("sub-sectors[{}]", s), fmt::format("found seg {} of another one too", i));
-                taken[i] = 1;
+                if (used[i] != 0)
+                    return fail(fmt::format("sub-sectors[{}]", s),
+                                fmt::format("found seg {}, which another sub-sector contains too", i));
+                used[i] = 1;
                 Seg& seg = out_.segs[i];
                 seg.sub_sector = static_cast<std::uint32_t>(s);
             }
             for (std::uint64_t i = placed.first; i < placed.first + size; ++i) {
                 const Seg& seg = out_.segs[i];
-                if (seg.line == no_line) continue;
+                if (seg.line == no_index) continue;
                 const Line& line = map_.lines[seg.line];
                 placed.sector = map_.sides[seg.left ? line.left : line.right].sector;
                 break;
             }
         }
     }
-    /// Each node and sub-sector is somebody's child once, and all hang on the root.
+    /// Checks that each node and sub-sector is a child exactly once and is reached from the root.
     void check_tree() {
         std::vector<std::uint8_t> node_seen(out_.nodes.size()), leaf_seen(out_.sub_sectors.size());
-        std::vector<std::uint32_t> to_do{out_.root()};
+        std::vector<std::uint32_t> stack{out_.root()};
         std::size_t seen = 0;
-        while (!to_do.empty()) {
-            const std::uint32_t child = to_do.back(), index = child & ~Node::leaf_bit;
-            to_do.pop_back();
+        while (!stack.empty()) {
+            const std::uint32_t child = stack.back(), index = child & ~Node::leaf_bit;
+            stack.pop_back();
             const bool is_leaf = (child & Node::leaf_bit) != 0;
             std::vector<std::uint8_t>& marks = is_leaf ? leaf_seen : node_seen;
             if (index >= marks.size() || marks[index] != 0) {
-                return fail("nodes", fmt::format("found {} {} as a child {}, need each of the {} once",
+                return fail("nodes", fmt::format("found {} {} as a child {}; expected each of the {} once",
                                                  is_leaf ? "sub-sector" : "node", index,
                                                  index < marks.size() ? "twice" : "that does not exist", marks.size()));
             }
@@ -291,32 +293,32 @@ private:
             if (is_leaf) continue;
             if (out_.nodes[index].dx == 0 && out_.nodes[index].dy == 0)
                 return fail(fmt::format("nodes[{}]", index), "found a partition line without a direction");
-            for (const std::uint32_t next : out_.nodes[index].children) to_do.push_back(next);
+            for (const std::uint32_t next : out_.nodes[index].children) stack.push_back(next);
         }
         if (seen != out_.nodes.size() + out_.sub_sectors.size())
-            fail("nodes", fmt::format("found {} nodes and sub-sectors below the root, need all {}", seen,
+            fail("nodes", fmt::format("found {} nodes and sub-sectors below the root; expected all {}", seen,
                                       out_.nodes.size() + out_.sub_sectors.size()));
     }
-    void count() {
+    void count_stats() {
         BspStats& stats = out_.stats;
         for (const Line& line : map_.lines) {
             ++stats.lines;
             stats.sides += (line.right != no_side ? 1u : 0u) + (line.left != no_side ? 1u : 0u);
         }
-        for (const Seg& seg : out_.segs) ++(seg.line == no_line ? stats.minisegs : stats.wall_segs);
+        for (const Seg& seg : out_.segs) ++(seg.line == no_index ? stats.minisegs : stats.wall_segs);
         stats.splits = stats.wall_segs > stats.sides ? stats.wall_segs - stats.sides : 0;
         stats.worst_depth = 0;
-        std::vector<std::pair<std::uint32_t, std::size_t>> to_do{{out_.root(), 0}};
+        std::vector<std::pair<std::uint32_t, std::size_t>> stack{{out_.root(), 0}};
         std::size_t sum = 0;
-        while (!to_do.empty()) {
-            const auto [child, depth] = to_do.back();
-            to_do.pop_back();
+        while (!stack.empty()) {
+            const auto [child, depth] = stack.back();
+            stack.pop_back();
             if ((child & Node::leaf_bit) != 0) {
                 sum += depth;
                 stats.worst_depth = std::max(stats.worst_depth, depth);
                 continue;
             }
-            for (const std::uint32_t next : out_.nodes[child].children) to_do.emplace_back(next, depth + 1);
+            for (const std::uint32_t next : out_.nodes[child].children) stack.emplace_back(next, depth + 1);
         }
         stats.mean_depth = static_cast<double>(sum) / static_cast<double>(out_.sub_sectors.size());
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// What one point of a level sees.
+/// Computes what is visible from one point of a level.
 #include <optional>
 #include <vector>
 
@@ -7,25 +7,25 @@
 
 namespace fase::level {
 
-/// What is seen, on the plan.
+/// The visible area on the plan.
 struct SeenFrom {
-    std::vector<std::uint32_t> sub_sectors;  ///< of which a part is seen, by number
-    std::vector<Point> corners;              ///< of the parts, clockwise
-    std::vector<std::uint32_t> part_ends;    ///< one past the last corner of each; parts do not overlap
+    std::vector<std::uint32_t> sub_sectors;  ///< that are at least partly visible, sorted by index
+    std::vector<Point> corners;              ///< of the visible parts, clockwise
+    std::vector<std::uint32_t> part_ends;    ///< one past the last corner of each part; parts do not overlap
     double area = 0;                         ///< of all parts, square map units
     bool complete = true;                    ///< false: the limit of steps was reached
 };
 
 /// An eye at a height.
 struct Eye {
-    Point at;
-    double z = 0;  ///< with Heights::Counted only
+    Point position;
+    double z = 0;  ///< used with Heights::Counted only
 };
 
-/// Looks from a point through all openings, each with the part of it that is seen: as the plan goes this is exact but
-/// for rounding. With heights, openings hide by what steep lines get through them: a part is told when some height of
-/// it may be seen. nullopt when the point lies outside the level. O(what is seen), at most a million openings.
-/// Source: the walk through portals of Teller, Séquin 1991, from a point.
+/// Follows the view from a point through all openings, clipped by each: on the plan this is exact except for rounding.
+/// With heights, openings block the lines that are too steep for them: a part counts as visible if some height of it
+/// can be visible. nullopt if the point is outside the level. O(visible openings), at most a million openings. Source:
+/// the portal traversal of Teller, Séquin 1991, from a point.
 [[nodiscard]] std::optional<SeenFrom> seen_from(const LevelBsp& bsp, const Map& map, const Eye& eye,
                                                 Heights heights = Heights::Ignored);
 

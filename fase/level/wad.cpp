@@ -1,4 +1,4 @@
-/// Header, directory and lumps, each checked against the file before it is believed.
+/// Parses the header, the directory and the lumps; validates each against the size of the file.
 #include "fase/level/wad.hpp"
 
 #include <fmt/format.h>
@@ -39,17 +39,18 @@ bool is_map_lump(std::string_view name) {
 
 Result<Wad> Wad::parse(const std::string& name, std::span<const std::byte> bytes) {
     if (bytes.size() < header_bytes)
-        return at_byte(name, 0, fmt::format("found {} bytes, need a WAD header of {}", bytes.size(), header_bytes));
+        return at_byte(name, 0, fmt::format("found {} bytes; expected a WAD header of {}", bytes.size(), header_bytes));
     const std::string magic(reinterpret_cast<const char*>(bytes.data()), 4);
     if (magic != "IWAD" && magic != "PWAD")
-        return at_byte(name, 0, "found other first bytes, need \"IWAD\" or \"PWAD\"");
+        return at_byte(name, 0, "found other first bytes; expected \"IWAD\" or \"PWAD\"");
     const std::int64_t count = read_i32(bytes, 4), directory = read_i32(bytes, 8);
     const auto size = static_cast<std::int64_t>(bytes.size());
-    if (count < 0) return at_byte(name, 4, fmt::format("found {} lumps, need 0 or more", count));
+    if (count < 0) return at_byte(name, 4, fmt::format("found {} lumps; expected 0 or more", count));
     if (directory < 0 || directory > size || count > (size - directory) / static_cast<std::int64_t>(entry_bytes)) {
-        return at_byte(name, 8,
-                       fmt::format("found a directory of {} entries at byte {}, need it inside the file of {} bytes",
-                                   count, directory, size));
+        return at_byte(
+            name, 8,
+            fmt::format("found a directory of {} entries at byte {}; expected it inside the file of {} bytes", count,
+                        directory, size));
     }
     Wad wad;
     wad.kind = magic == "IWAD" ? Kind::Whole : Kind::Patch;
@@ -59,15 +60,15 @@ Result<Wad> Wad::parse(const std::string& name, std::span<const std::byte> bytes
         const std::int64_t at = read_i32(bytes, entry), length = read_i32(bytes, entry + 4);
         const std::string lump = name_at(bytes, entry + 8);
         if (length < 0)
-            return at_byte(name, entry + 4, fmt::format("found lump {} of {} bytes, need 0 or more", i, length));
+            return at_byte(name, entry + 4, fmt::format("found lump {} of {} bytes; expected 0 or more", i, length));
         if (length > 0 && (at < 0 || at > size || length > size - at)) {
             return at_byte(name, entry,
-                           fmt::format("found lump {} of {} bytes at byte {}, need it inside the file of {} bytes", i,
-                                       length, at, size));
+                           fmt::format("found lump {} of {} bytes at byte {}; expected it inside the file of {} bytes",
+                                       i, length, at, size));
         }
         sum += length;
         if (sum > 4 * size + (1 << 20))
-            return at_byte(name, entry, "found lumps that lie over each other many times, need one place for each");
+            return at_byte(name, entry, "found lumps that overlap many times; expected separate lumps");
         const auto first = bytes.begin() + (length > 0 ? at : 0);
         wad.lumps.push_back({lump, std::vector<std::byte>(first, first + length)});
     }
@@ -80,23 +81,23 @@ Result<Wad> Wad::read(const std::string& path) {
     return parse(path, *bytes);
 }
 
-Result<std::vector<std::byte>> Wad::packed() const {
+Result<std::vector<std::byte>> Wad::to_bytes() const {
     std::uint64_t total = header_bytes + entry_bytes * std::uint64_t{lumps.size()};
     for (const Lump& lump : lumps) total += lump.bytes.size();
     if (total > 0x7fffffff)
-        return Error{Status::OutOfRange, "WAD", fmt::format("found {} bytes, need less than 2^31", total), {}};
+        return Error{Status::OutOfRange, "WAD", fmt::format("found {} bytes; expected less than 2^31", total), {}};
     std::vector<std::byte> out;
     out.reserve(total);
     for (const char c : std::string_view(kind == Kind::Whole ? "IWAD" : "PWAD")) out.push_back(std::byte(c));
     append_u32(out, static_cast<std::uint32_t>(lumps.size()));
     append_u32(out, static_cast<std::uint32_t>(total - entry_bytes * lumps.size()));
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> offsets;
     for (const Lump& lump : lumps) {
-        places.push_back(static_cast<std::uint32_t>(out.size()));
+        offsets.push_back(static_cast<std::uint32_t>(out.size()));
         out.insert(out.end(), lump.bytes.begin(), lump.bytes.end());
     }
     for (std::size_t i = 0; i < lumps.size(); ++i) {
-        append_u32(out, places[i]);
+        append_u32(out, offsets[i]);
         append_u32(out, static_cast<std::uint32_t>(lumps[i].bytes.size()));
         append_name(out, lumps[i].name);
     }
@@ -142,8 +143,8 @@ void Wad::set_in_map(std::size_t marker, std::string_view lump, std::vector<std:
         lumps[*place].bytes = std::move(bytes);
         return;
     }
-    const auto behind = static_cast<std::ptrdiff_t>(marker + 1 + lumps_of_map(marker));
-    lumps.insert(lumps.begin() + behind, Lump{std::string(lump), std::move(bytes)});
+    const auto end = static_cast<std::ptrdiff_t>(marker + 1 + lumps_of_map(marker));
+    lumps.insert(lumps.begin() + end, Lump{std::string(lump), std::move(bytes)});
 }
 
 }  // namespace fase::level

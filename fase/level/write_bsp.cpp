@@ -1,4 +1,4 @@
-/// Each lump is built whole and put into the WAD when all are good.
+/// Builds all lumps first and stores them in the WAD only if all are valid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,19 +14,19 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-std::int16_t whole(double value) {
+std::int16_t to_i16(double value) {
     return static_cast<std::int16_t>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
 }
-std::uint32_t fixed(double value) {
+std::uint32_t to_fixed(double value) {
     return static_cast<std::uint32_t>(
         static_cast<std::int32_t>(std::clamp(std::floor(value * 65536 + 0.5), -2147483648.0, 2147483647.0)));
 }
 
-/// A map's tree on its way into lumps.
+/// Encodes a map's tree as lumps.
 class Writer {
 public:
     Writer(const Map& map, const LevelBsp& bsp, std::string where) : map_(map), bsp_(bsp), where_(std::move(where)) {
-        // Vertices that other compilers left behind those of the lines go, unless one of ours is in the same place.
+        // Drops vertices that other compilers added after those of the lines, unless a seg uses them.
         for (const Line& line : map.lines) kept_ = std::max<std::uint32_t>({kept_, line.from + 1u, line.to + 1u});
         for (const Seg& seg : bsp.segs)
             for (const std::uint32_t v : {seg.from, seg.to})
@@ -36,16 +36,16 @@ public:
     }
 
     Result<void> classic(std::vector<Lump>& out) const {
-        if (auto fits = most("vertices", kept_ + cuts_, 65536); !fits) return fits;
-        if (auto fits = most("segs", walls_.size(), 65535); !fits) return fits;
-        if (auto fits = most("sub-sectors", bsp_.sub_sectors.size(), 32768); !fits) return fits;
+        if (auto fits = check_limit("vertices", kept_ + cuts_, 65536); !fits) return fits;
+        if (auto fits = check_limit("segs", walls_.size(), 65535); !fits) return fits;
+        if (auto fits = check_limit("sub-sectors", bsp_.sub_sectors.size(), 32768); !fits) return fits;
         Bytes vertices, segs, subs;
-        put_vertices(vertices);
+        append_vertices(vertices);
         for (std::uint32_t v = 0; v < cuts_; ++v) {
-            append_i16(vertices, whole(cut(v).x));
-            append_i16(vertices, whole(cut(v).y));
+            append_i16(vertices, to_i16(cut(v).x));
+            append_i16(vertices, to_i16(cut(v).y));
         }
-        for (const Seg& wall : walls_) put_classic(segs, wall);
+        for (const Seg& wall : walls_) append_classic_seg(segs, wall);
         for (std::size_t s = 0; s < bsp_.sub_sectors.size(); ++s) {
             append_u16(subs, static_cast<std::uint16_t>(first_wall_[s + 1] - first_wall_[s]));
             append_u16(subs, static_cast<std::uint16_t>(first_wall_[s]));
@@ -59,19 +59,19 @@ public:
 
     Result<void> extended(std::vector<Lump>& out, bool gl) const {
         Bytes vertices, sub_sectors;
-        put_vertices(vertices);
+        append_vertices(vertices);
         Bytes normal = header("XNOD");
         append_u32(normal, static_cast<std::uint32_t>(bsp_.sub_sectors.size()));
         for (std::size_t s = 0; s < bsp_.sub_sectors.size(); ++s)
             append_u32(normal, static_cast<std::uint32_t>(first_wall_[s + 1] - first_wall_[s]));
         append_u32(normal, static_cast<std::uint32_t>(walls_.size()));
         for (const Seg& wall : walls_) {
-            append_u32(normal, all_vertices(wall.from));
-            append_u32(normal, all_vertices(wall.to));
+            append_u32(normal, vertex_index(wall.from));
+            append_u32(normal, vertex_index(wall.to));
             append_u16(normal, static_cast<std::uint16_t>(wall.line));
             normal.push_back(std::byte{wall.left});
         }
-        put_nodes(normal);
+        append_nodes(normal);
         if (gl) sub_sectors = extended_gl();
         out.push_back({"VERTEXES", std::move(vertices)});
         out.push_back({"SEGS", {}});
@@ -80,18 +80,18 @@ public:
         return {};
     }
 
-    /// The GL lumps, their marker first.
+    /// Returns the GL lumps, with their marker first.
     [[nodiscard]] std::vector<Lump> gl() const {
         const std::size_t edges = edges_before(bsp_.sub_sectors.size());
         const bool wide = kept_ > 32768 || cuts_ > 32768 || edges > 65534 || bsp_.sub_sectors.size() > 32768;
         Bytes vertices, segs, subs;
         append_text(vertices, wide ? "gNd5" : "gNd2");
         for (std::uint32_t v = 0; v < cuts_; ++v) {
-            append_u32(vertices, fixed(cut(v).x));
-            append_u32(vertices, fixed(cut(v).y));
+            append_u32(vertices, to_fixed(cut(v).x));
+            append_u32(vertices, to_fixed(cut(v).y));
         }
         std::size_t first = 0;
-        const std::vector<std::uint32_t> places = edge_places();
+        const std::vector<std::uint32_t> indices = edge_indices();
         for (const SubSector& s : bsp_.sub_sectors) {
             const auto number = [&](std::size_t value) {
                 wide ? append_u32(subs, static_cast<std::uint32_t>(value))
@@ -107,9 +107,9 @@ public:
                 const std::uint32_t flag = wide ? 0x80000000u : 0x8000u;
                 for (const std::uint32_t v : {seg.from, seg.to})
                     put(v < bsp_.map_vertices ? v : flag | (v - static_cast<std::uint32_t>(bsp_.map_vertices)));
-                append_u16(segs, static_cast<std::uint16_t>(seg.line));  // of minisegs 0xffff
+                append_u16(segs, static_cast<std::uint16_t>(seg.line));  // 0xffff for minisegs
                 append_u16(segs, seg.left ? 1 : 0);
-                put(seg.partner == no_seg ? 0xffffffffu : places[seg.partner]);
+                put(seg.partner == no_index ? 0xffffffffu : indices[seg.partner]);
             }
         }
         return {{"GL_" + map_.name, {}},
@@ -123,17 +123,17 @@ private:
     const Map& map_;
     const LevelBsp& bsp_;
     std::string where_;
-    std::uint32_t kept_ = 0;  ///< vertices of the map that are written
-    std::uint32_t cuts_ = 0;  ///< vertices behind them
-    std::vector<Seg> walls_;  ///< without minisegs, pieces joined that were cut for neighbours only
+    std::uint32_t kept_ = 0;  ///< number of written vertices of the map
+    std::uint32_t cuts_ = 0;  ///< number of split points after them
+    std::vector<Seg> walls_;  ///< without minisegs; pieces split only at neighbours' corners are joined
     std::vector<std::size_t> first_wall_{0};
 
-    /// The walls of a sub-sector; one of its own sector first, for that is what games ask.
+    /// Adds the walls of a sub-sector; one of its own sector first, because games take the sector from it.
     void add_walls(const SubSector& s) {
         const std::size_t first = walls_.size();
         for (std::uint32_t i = s.first; i < s.first + s.edges + s.outliers; ++i) {
             const Seg& seg = bsp_.segs[i];
-            if (seg.line == no_line) continue;
+            if (seg.line == no_index) continue;
             const bool continues = walls_.size() > first && walls_.back().line == seg.line &&
                                    walls_.back().left == seg.left && walls_.back().to == seg.from &&
                                    i < s.first + s.edges;
@@ -152,18 +152,18 @@ private:
         first_wall_.push_back(walls_.size());
     }
 
-    [[nodiscard]] Result<void> most(std::string_view what, std::size_t found, std::size_t limit) const {
+    [[nodiscard]] Result<void> check_limit(std::string_view what, std::size_t found, std::size_t limit) const {
         if (found <= limit) return {};
         return Error{Status::OutOfRange, where_,
-                     fmt::format("found {} {}, need at most {} in the classic format", found, what, limit),
+                     fmt::format("found {} {}; expected at most {} in the classic format", found, what, limit),
                      "write extended nodes"};
     }
     [[nodiscard]] Point cut(std::uint32_t v) const { return bsp_.vertices[bsp_.map_vertices + v]; }
-    /// Where a vertex is when cut points are written behind the map's.
-    [[nodiscard]] std::uint32_t all_vertices(std::uint32_t v) const {
+    /// Returns the index of a vertex in a list of the map's vertices followed by the split points.
+    [[nodiscard]] std::uint32_t vertex_index(std::uint32_t v) const {
         return v < bsp_.map_vertices ? v : static_cast<std::uint32_t>(v - bsp_.map_vertices + kept_);
     }
-    void put_vertices(Bytes& out) const {
+    void append_vertices(Bytes& out) const {
         for (std::uint32_t v = 0; v < kept_; ++v) {
             append_i16(out, map_.vertices[v].x);
             append_i16(out, map_.vertices[v].y);
@@ -172,12 +172,12 @@ private:
     static void append_text(Bytes& out, std::string_view text) {
         for (const char c : text) out.push_back(static_cast<std::byte>(c));
     }
-    void put_classic(Bytes& out, const Seg& seg) const {
+    void append_classic_seg(Bytes& out, const Seg& seg) const {
         const Line& line = map_.lines[seg.line];
         const Vertex a = map_.vertices[line.from], b = map_.vertices[line.to];
         const double sign = seg.left ? -1 : 1;
-        append_u16(out, static_cast<std::uint16_t>(all_vertices(seg.from)));
-        append_u16(out, static_cast<std::uint16_t>(all_vertices(seg.to)));
+        append_u16(out, static_cast<std::uint16_t>(vertex_index(seg.from)));
+        append_u16(out, static_cast<std::uint16_t>(vertex_index(seg.to)));
         append_u16(out, binary_angle(sign * (b.x - a.x), sign * (b.y - a.y)));
         append_u16(out, static_cast<std::uint16_t>(seg.line));
         append_u16(out, seg.left ? 1 : 0);
@@ -190,8 +190,8 @@ private:
         append_u32(out, kept_);
         append_u32(out, cuts_);
         for (std::uint32_t v = 0; v < cuts_; ++v) {
-            append_u32(out, fixed(cut(v).x));
-            append_u32(out, fixed(cut(v).y));
+            append_u32(out, to_fixed(cut(v).x));
+            append_u32(out, to_fixed(cut(v).y));
         }
         return out;
     }
@@ -200,16 +200,16 @@ private:
         append_u32(out, static_cast<std::uint32_t>(bsp_.sub_sectors.size()));
         for (const SubSector& s : bsp_.sub_sectors) append_u32(out, s.edges);
         append_u32(out, static_cast<std::uint32_t>(edges_before(bsp_.sub_sectors.size())));
-        const std::vector<std::uint32_t> places = edge_places();
+        const std::vector<std::uint32_t> indices = edge_indices();
         for (const SubSector& s : bsp_.sub_sectors) {
-            for (const Seg& seg : bsp_.edges(s)) {  // each goes to where the next one begins
-                append_u32(out, all_vertices(seg.from));
-                append_u32(out, seg.partner == no_seg ? 0xffffffffu : places[seg.partner]);
+            for (const Seg& seg : bsp_.edges(s)) {  // each ends at the start of the next one
+                append_u32(out, vertex_index(seg.from));
+                append_u32(out, seg.partner == no_index ? 0xffffffffu : indices[seg.partner]);
                 append_u16(out, static_cast<std::uint16_t>(seg.line));
                 out.push_back(std::byte{seg.left});
             }
         }
-        put_nodes(out);
+        append_nodes(out);
         return out;
     }
 
@@ -218,17 +218,17 @@ private:
         for (std::size_t s = 0; s < sub_sector; ++s) count += bsp_.sub_sectors[s].edges;
         return count;
     }
-    /// By seg: its place when strays are left out.
-    [[nodiscard]] std::vector<std::uint32_t> edge_places() const {
-        std::vector<std::uint32_t> places(bsp_.segs.size(), no_seg);
+    /// Returns the index of each seg in a list without outliers.
+    [[nodiscard]] std::vector<std::uint32_t> edge_indices() const {
+        std::vector<std::uint32_t> indices(bsp_.segs.size(), no_index);
         std::uint32_t next = 0;
         for (const SubSector& s : bsp_.sub_sectors)
-            for (std::uint32_t i = s.first; i < s.first + s.edges; ++i) places[i] = next++;
-        return places;
+            for (std::uint32_t i = s.first; i < s.first + s.edges; ++i) indices[i] = next++;
+        return indices;
     }
 
-    /// Directions longer than 16 bits hold are shortened; by a common divisor where there is one.
-    static void put_line(Bytes& out, const Node& node) {
+    /// Shortens directions that do not fit 16 bits, by a common divisor if there is one.
+    static void append_line(Bytes& out, const Node& node) {
         std::int32_t dx = node.dx, dy = node.dy;
         const auto too_long = [&] { return std::max(std::abs(dx), std::abs(dy)) > 32767; };
         if (const std::int32_t common = std::gcd(dx, dy); too_long() && common > 1) {
@@ -243,12 +243,12 @@ private:
         for (const PlanBox& box : node.boxes)
             for (const double value :
                  {std::ceil(box.hi.y), std::floor(box.lo.y), std::floor(box.lo.x), std::ceil(box.hi.x)})
-                append_i16(out, whole(value));
+                append_i16(out, to_i16(value));
     }
     [[nodiscard]] Bytes nodes(bool wide) const {
         Bytes out;
         for (const Node& node : bsp_.nodes) {
-            put_line(out, node);
+            append_line(out, node);
             for (const std::uint32_t child : node.children) {
                 if (wide) {
                     append_u32(out, child);
@@ -260,7 +260,7 @@ private:
         }
         return out;
     }
-    void put_nodes(Bytes& out) const {
+    void append_nodes(Bytes& out) const {
         append_u32(out, static_cast<std::uint32_t>(bsp_.nodes.size()));
         const Bytes all = nodes(true);
         out.insert(out.end(), all.begin(), all.end());
@@ -271,8 +271,8 @@ bool is_gl_lump(std::string_view name) {
     return name == "GL_VERT" || name == "GL_SEGS" || name == "GL_SSECT" || name == "GL_NODES" || name == "GL_PVS";
 }
 
-/// The map's lumps in the order of the format, as programs of old find them by counting.
-void put_in_order(Wad& wad, std::size_t marker) {
+/// Sorts the map's lumps into the order of the format: old programs find them by position.
+void sort_map_lumps(Wad& wad, std::size_t marker) {
     const auto first = wad.lumps.begin() + static_cast<std::ptrdiff_t>(marker + 1);
     const auto place = [](const Lump& lump) {
         std::string name = lump.name;
@@ -298,15 +298,15 @@ Result<void> write_bsp(Wad& wad, std::size_t marker, const std::string& file, co
         wad.set_in_map(marker, "REJECT", Bytes(reject_bytes, std::byte{0}));
     const auto blockmap = wad.find_in_map(marker, "BLOCKMAP");
     if (!blockmap || wad.lumps[*blockmap].bytes.empty()) wad.set_in_map(marker, "BLOCKMAP", make_blockmap(map));
-    put_in_order(wad, marker);
+    sort_map_lumps(wad, marker);
 
-    const auto behind = wad.lumps.begin() + static_cast<std::ptrdiff_t>(marker + 1 + wad.lumps_of_map(marker));
-    auto end = behind;
+    const auto after_map = wad.lumps.begin() + static_cast<std::ptrdiff_t>(marker + 1 + wad.lumps_of_map(marker));
+    auto end = after_map;
     if (end != wad.lumps.end() && end->name.starts_with("GL_") && !is_gl_lump(end->name)) {
         do ++end;
         while (end != wad.lumps.end() && is_gl_lump(end->name));
     }
-    const auto place = wad.lumps.erase(behind, end);
+    const auto place = wad.lumps.erase(after_map, end);
     if (options.gl && !options.extended) {
         std::vector<Lump> gl = writer.gl();
         wad.lumps.insert(place, std::make_move_iterator(gl.begin()), std::make_move_iterator(gl.end()));
@@ -315,13 +315,13 @@ Result<void> write_bsp(Wad& wad, std::size_t marker, const std::string& file, co
 }
 
 std::uint16_t binary_angle(double dx, double dy) {
-    // An eighth of a turn at most, by a series of the arcus tangens: no function of the C library is the same
-    // everywhere.
+    // Reduces the angle to an eighth of a turn and uses a series of the arc tangent, because atan2 of the C library is
+    // not the same everywhere.
     const double x = std::abs(dx), y = std::abs(dy), longer = std::max(x, y);
     if (longer == 0) return 0;
     double t = std::min(x, y) / longer;
-    t = t / (1 + std::sqrt(1 + t * t));  // half the angle: below 0.4143, so that the series is short
-    t = t / (1 + std::sqrt(1 + t * t));  // and again: below 0.199
+    t = t / (1 + std::sqrt(1 + t * t));  // tangent of half the angle: below 0.4143, which keeps the series short
+    t = t / (1 + std::sqrt(1 + t * t));  // halved again: below 0.199
     const double t2 = t * t;
     double sum = 0;
     for (int k = 19; k >= 1; k -= 2) sum = sum * -t2 + 1.0 / k;

@@ -1,4 +1,4 @@
-/// Traces made by rule: one frame at a time, straight into the file.
+/// Generates traces: writes one frame at a time to the file.
 #include "fase/record/generate_trace.hpp"
 
 #include <fmt/format.h>
@@ -17,48 +17,49 @@ std::vector<TraceKind> trace_kinds() {
     return kinds;
 }
 
-Result<MadeTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file) {
+Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file) {
     constexpr std::size_t max_boxes = 10'000'000;
     const auto rules = trace_rules();
     const auto rule = std::find_if(rules.begin(), rules.end(), [&](const TraceRule& r) { return r.kind.name == kind; });
     if (rule == rules.end()) {
         std::string names;
         for (const TraceRule& one : rules) names += (names.empty() ? "" : ", ") + std::string(one.kind.name);
-        return Error{Status::BadArgument, "kind", fmt::format("found \"{}\", need one of {}", kind, names), {}};
+        return Error{Status::BadArgument, "kind", fmt::format("found \"{}\"; expected one of {}", kind, names), {}};
     }
-    MadeTrace made;
-    made.boxes = settings.count == 0 ? rule->kind.default_count : settings.count;
-    made.frames = settings.frames == 0 ? rule->kind.default_frames : settings.frames;
-    if (made.boxes > max_boxes)
-        return Error{Status::BadArgument, "count", fmt::format("found {}, need at most {}", made.boxes, max_boxes), {}};
-    Result<TraceWriter> writer = TraceWriter::create(file, made.boxes);
+    GeneratedTrace generated;
+    generated.boxes = settings.count == 0 ? rule->kind.default_count : settings.count;
+    generated.frames = settings.frames == 0 ? rule->kind.default_frames : settings.frames;
+    if (generated.boxes > max_boxes)
+        return Error{
+            Status::BadArgument, "count", fmt::format("found {}; expected at most {}", generated.boxes, max_boxes), {}};
+    Result<TraceWriter> writer = TraceWriter::create(file, generated.boxes);
     if (!writer) return writer.error();
 
-    TraceStage stage;
-    stage.room = Aabb::everything();
+    TraceState state;
+    state.walls = Aabb::everything();
     Hasher name;
     name.add_bytes(std::as_bytes(std::span(kind)));
-    stage.random = Random(settings.seed, name.value());
-    stage.bodies.reserve(made.boxes);
-    rule->begin(stage, made.boxes);
+    state.random = Random(settings.seed, name.value());
+    state.bodies.reserve(generated.boxes);
+    rule->begin(state, generated.boxes);
     std::vector<std::uint8_t> flags;
-    for (const TraceBody& body : stage.bodies) {
+    for (const TraceBody& body : state.bodies) {
         flags.push_back(body.flags);
-        made.static_boxes += (body.flags & trace_static) != 0 ? 1 : 0;
-        made.asleep_boxes += (body.flags & trace_asleep) != 0 ? 1 : 0;
+        generated.static_boxes += (body.flags & trace_static) != 0 ? 1 : 0;
+        generated.asleep_boxes += (body.flags & trace_asleep) != 0 ? 1 : 0;
     }
     std::vector<Aabb> boxes;
-    for (stage.frame = 0; stage.frame < made.frames; ++stage.frame) {
-        if (stage.frame > 0) rule->move(stage);
+    for (state.frame = 0; state.frame < generated.frames; ++state.frame) {
+        if (state.frame > 0) rule->move(state);
         boxes.clear();
-        for (const TraceBody& body : stage.bodies) boxes.push_back({body.at - body.half, body.at + body.half});
+        for (const TraceBody& body : state.bodies) boxes.push_back({body.centre - body.half, body.centre + body.half});
         if (Result<void> added = writer->add_frame(boxes); !added) {
             writer->discard();
             return added.error();
         }
     }
     if (Result<void> finished = writer->finish(flags); !finished) return finished.error();
-    return made;
+    return generated;
 }
 
 }  // namespace fase::record

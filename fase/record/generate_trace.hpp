@@ -1,5 +1,5 @@
 #pragma once
-/// Traces made by rule: the workloads on which broad phases differ.
+/// Generates traces: workloads that show the differences between broad phases.
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,31 +9,31 @@
 
 namespace fase::record {
 
-/// Of a made trace. Equal numbers give equal bytes with any compiler, on any machine.
+/// The settings of a generated trace. Equal settings give equal bytes with any compiler, on any machine.
 struct TraceSettings {
-    std::size_t count = 0;     ///< boxes; 0: the kind's own number
-    std::uint32_t frames = 0;  ///< of 1/60 s; 0: the kind's own number
-    std::uint64_t seed = 1;    ///< another one of the kind
+    std::size_t count = 0;     ///< number of boxes; 0: the default of the kind
+    std::uint32_t frames = 0;  ///< frames of 1/60 s; 0: the default of the kind
+    std::uint64_t seed = 1;    ///< selects a variant of the kind
 };
 
-/// A kind of trace, as people are told of it.
+/// The description of a kind of trace.
 struct TraceKind {
     std::string_view name, description;
     std::size_t default_count = 0;
     std::uint32_t default_frames = 0;
 };
 
-/// All kinds, in the order in which they are told.
+/// Returns all kinds, in display order.
 [[nodiscard]] std::vector<TraceKind> trace_kinds();
 
-/// What generate_trace() wrote.
-struct MadeTrace {
+/// The counts of a trace that generate_trace() wrote.
+struct GeneratedTrace {
     std::size_t boxes = 0, static_boxes = 0, asleep_boxes = 0;
     std::uint32_t frames = 0;
 };
 
-/// Writes a trace of a kind. BadArgument ("kind", "count") for an unknown kind and for more than 10,000,000 boxes; Io
-/// as of TraceWriter. Memory for one frame, however many there are.
-Result<MadeTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file);
+/// Writes a trace of a kind. Errors: BadArgument (where: "kind", "count") for an unknown kind and for more than
+/// 10,000,000 boxes; Io as in TraceWriter. Needs memory for one frame, regardless of the number of frames.
+Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file);
 
 }  // namespace fase::record

@@ -1,4 +1,4 @@
-/// Bodies as nodes, motion as channels.
+/// Exports bodies as glTF nodes and their motion as animation channels.
 #include "fase/record/glb_export.hpp"
 
 #include <algorithm>
@@ -19,20 +19,20 @@ namespace {
 
 using nlohmann::json;
 
-/// A body's motion while the frames go by.
+/// Collects the motion of one body, frame by frame.
 struct Motion {
     Motion(const GlbOptions& options)
         : positions(options.metres), rotations(options.degrees * 3.14159265358979323846 / 180) {}
     MotionKeys<Vec3d> positions;
     MotionKeys<Quatd> rotations;
-    std::vector<std::pair<double, bool>> lives;  ///< from when on it is there or not; only the changes
+    std::vector<std::pair<double, bool>> presence;  ///< times at which it appears (true) or disappears
 };
 
 json to_json(Vec3 v) { return {v.x, v.y, v.z}; }
 json to_json(Quat q) { return {q.x, q.y, q.z, q.w}; }
-bool is_none(Quat q) { return q == Quat{} || q == Quat{0, 0, 0, -1}; }
+bool is_identity(Quat q) { return q == Quat{} || q == Quat{0, 0, 0, -1}; }
 
-/// Colour of a body that has none.
+/// Returns the colour of a body without a colour.
 Colour default_colour(const RecordedBody& body, std::uint32_t row) {
     if (body.kind == 0) return {150, 152, 158, 255};
     if (body.kind == 1) return {214, 152, 62, 255};
@@ -49,21 +49,11 @@ float linear_from_srgb(std::uint8_t value) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
-/// A recorded shape as triangles with normals.
+/// Returns a recorded shape as triangles with normals.
 RecordedMesh mesh_of(const RecordedShape& shape, int detail) {
-    if (shape.kind == ShapeKind::Hull || shape.kind == ShapeKind::Triangles) {
-        return with_normals(shape.vertices, shape.triangles);
-    }
-    const auto& size = shape.size;
-    Shape exact;
-    switch (shape.kind) {
-        case ShapeKind::Box: exact = Box{{size[0], size[1], size[2]}}; break;
-        case ShapeKind::Capsule: exact = Capsule{size[0], size[1]}; break;
-        case ShapeKind::Cylinder: exact = Cylinder{size[0], size[1]}; break;
-        case ShapeKind::HalfSpace: exact = HalfSpace{}; break;
-        default: exact = Sphere{size[0]}; break;
-    }
-    const TriangleMesh mesh = triangles(exact, detail);
+    const std::optional<Shape> exact = shape_of(shape);
+    if (!exact) return with_normals(shape.vertices, shape.triangles);
+    const TriangleMesh mesh = triangles(*exact, detail);
     std::vector<Triangle> corners;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         corners.push_back({mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
@@ -82,14 +72,14 @@ public:
 
     Result<std::vector<std::byte>> run() {
         document_["asset"] = {{"version", "2.0"}, {"generator", tables_.head.program}};
-        sort_parts();
+        collect_parts();
         if (Result<void> read = read_motions(); !read) return read.error();
         add_nodes();
         return glb_.finish(document_.dump(-1, ' ', false, json::error_handler_t::replace));
     }
 
 private:
-    /// A mesh of a body: a shape's or one for the picture.
+    /// A mesh of a body: of a shape or a visual.
     using PartKey = std::tuple<bool, std::uint32_t, float, float, float, float, float, float, float>;
     struct Part {
         bool is_visual;
@@ -109,21 +99,21 @@ private:
         std::uint32_t positions, normals, indices;
     };
 
-    void sort_parts() {
+    void collect_parts() {
         for (const RecordedVisual& visual : tables_.visuals) {
             if (tables_.meshes[visual.mesh].triangles.empty()) continue;
-            parts_[visual.body].push_back({true, visual.mesh, visual.pose, coloured(visual.colour, visual.body)});
+            parts_[visual.body].push_back({true, visual.mesh, visual.pose, colour_of(visual.colour, visual.body)});
         }
         for (const RecordedCollider& collider : tables_.colliders) {
             std::vector<Part>& parts = parts_[collider.body];
             const bool has_visuals = !parts.empty() && parts[0].is_visual;
             const bool ended = collider.end_frame != std::numeric_limits<std::uint64_t>::max();
             if (has_visuals || collider.sensor || ended) continue;
-            parts.push_back({false, collider.shape, collider.pose, coloured({}, collider.body)});
+            parts.push_back({false, collider.shape, collider.pose, colour_of({}, collider.body)});
         }
     }
-    [[nodiscard]] Colour coloured(Colour own, std::uint32_t row) const {
-        if (own.alpha != 0) return own;
+    [[nodiscard]] Colour colour_of(Colour preferred, std::uint32_t row) const {
+        if (preferred.alpha != 0) return preferred;
         const RecordedBody& body = tables_.bodies[row];
         return body.colour.alpha != 0 ? body.colour : default_colour(body, row);
     }
@@ -136,7 +126,7 @@ private:
             if (Result<void> read = player_.read(k, frame); !read) return read;
             if (k == 0) {
                 first = frame.time;
-                place_origin(frame);
+                choose_origin(frame);
             }
             const double time = k == 0 ? 0 : frame.time - first;
             if (k != 0 && !(time > end_ && static_cast<float>(time) > static_cast<float>(end_))) continue;
@@ -148,17 +138,18 @@ private:
                 if (!motion) motion.emplace(options_);
                 motion->positions.add(time, body.pose.position - origin_);
                 motion->rotations.add(time, to_double(body.pose.rotation));
-                if (motion->lives.empty() || !motion->lives.back().second) motion->lives.emplace_back(time, true);
+                if (motion->presence.empty() || !motion->presence.back().second)
+                    motion->presence.emplace_back(time, true);
             }
             for (const std::uint32_t row : before) {
-                if (!std::binary_search(now.begin(), now.end(), row)) motions_[row]->lives.emplace_back(time, false);
+                if (!std::binary_search(now.begin(), now.end(), row)) motions_[row]->presence.emplace_back(time, false);
             }
             before.swap(now);
         }
         return {};
     }
-    /// Floats far from 0 are coarse: the middle of what moves becomes the origin.
-    void place_origin(const Frame& frame) {
+    /// Moves the origin to the mean position of the moving bodies, because floats far from 0 are imprecise.
+    void choose_origin(const Frame& frame) {
         Vec3d sum;
         double count = 0;
         for (const BodyFrame& body : frame.bodies) {
@@ -172,8 +163,8 @@ private:
     }
 
     std::uint32_t material_of(const Part& part) {
-        const auto [found, is_new] = materials_.try_emplace(part.colour_key(), 0);
-        if (!is_new) return found->second;
+        const auto [found, inserted] = materials_.try_emplace(part.colour_key(), 0);
+        if (!inserted) return found->second;
         json& list = document_["materials"];
         found->second = static_cast<std::uint32_t>(list.size());
         const Colour c = part.colour;
@@ -188,10 +179,10 @@ private:
         return found->second;
     }
 
-    /// nullopt when there is nothing to draw.
+    /// Returns the accessors of a part; nullopt if it has no triangles.
     std::optional<Accessors> accessors_of(const Part& part) {
-        const auto [found, is_new] = geometries_.try_emplace(part.key());
-        if (!is_new) return found->second;
+        const auto [found, inserted] = geometries_.try_emplace(part.key());
+        if (!inserted) return found->second;
         RecordedMesh mesh =
             part.is_visual ? tables_.meshes[part.source] : mesh_of(tables_.shapes[part.source], options_.detail);
         if (mesh.normals.empty()) mesh = with_normals(mesh.vertices, mesh.triangles);
@@ -206,18 +197,18 @@ private:
         return found->second;
     }
 
-    /// The number of the mesh of these parts; nullopt when there is nothing to draw.
+    /// Returns the index of the mesh of these parts; nullopt if they have no triangles.
     std::optional<std::uint32_t> mesh_of_parts(const std::vector<Part>& parts) {
         std::vector<std::pair<PartKey, std::uint32_t>> key;
         for (const Part& part : parts) key.emplace_back(part.key(), part.colour_key());
-        const auto [found, is_new] = meshes_.try_emplace(std::move(key));
-        if (!is_new) return found->second;
+        const auto [found, inserted] = meshes_.try_emplace(std::move(key));
+        if (!inserted) return found->second;
         json primitives = json::array();
         for (const Part& part : parts) {
-            const std::optional<Accessors> at = accessors_of(part);
-            if (!at) continue;
-            primitives.push_back({{"attributes", {{"POSITION", at->positions}, {"NORMAL", at->normals}}},
-                                  {"indices", at->indices},
+            const std::optional<Accessors> accessors = accessors_of(part);
+            if (!accessors) continue;
+            primitives.push_back({{"attributes", {{"POSITION", accessors->positions}, {"NORMAL", accessors->normals}}},
+                                  {"indices", accessors->indices},
                                   {"material", material_of(part)}});
         }
         if (primitives.empty()) return std::nullopt;
@@ -233,7 +224,7 @@ private:
         channels_.push_back({{"sampler", samplers_.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
     }
 
-    /// Times of keys as they are stored. Keys that fall together in float are nudged on: times must rise.
+    /// Adds the times of keys. If two times are equal as floats, increases the second: times must be ascending.
     template <class Key> std::uint32_t add_times(const std::vector<Key>& keys) {
         std::vector<float> times;
         for (const Key& key : keys) {
@@ -255,25 +246,25 @@ private:
             add_channel(number, "translation", add_times(positions), glb_.add_points(points), "LINEAR");
 
         const auto& rotations = motion.rotations.finish();
-        std::vector<Quat> turns;
+        std::vector<Quat> quaternions;
         for (const auto& key : rotations) {
             Quat q = to_float(key.value);
-            if (!turns.empty()) {
-                const Quat b = turns.back();
+            if (!quaternions.empty()) {
+                const Quat b = quaternions.back();
                 if (q.x * b.x + q.y * b.y + q.z * b.z + q.w * b.w < 0) q = {-q.x, -q.y, -q.z, -q.w};
             }
-            turns.push_back(q);
+            quaternions.push_back(q);
         }
-        if (!is_none(turns[0])) node["rotation"] = to_json(turns[0]);
-        if (turns.size() > 1)
-            add_channel(number, "rotation", add_times(rotations), glb_.add_rotations(turns), "LINEAR");
+        if (!is_identity(quaternions[0])) node["rotation"] = to_json(quaternions[0]);
+        if (quaternions.size() > 1)
+            add_channel(number, "rotation", add_times(rotations), glb_.add_rotations(quaternions), "LINEAR");
 
-        if (motion.lives.size() == 1 && motion.lives[0].first == 0) return;
-        if (motion.lives[0].first > 0) motion.lives.insert(motion.lives.begin(), {0.0, false});
+        if (motion.presence.size() == 1 && motion.presence[0].first == 0) return;
+        if (motion.presence[0].first > 0) motion.presence.insert(motion.presence.begin(), {0.0, false});
         std::vector<Vec3> scales;
-        for (const auto& [time, lives] : motion.lives) scales.push_back(lives ? Vec3{1, 1, 1} : Vec3{});
+        for (const auto& [time, present] : motion.presence) scales.push_back(present ? Vec3{1, 1, 1} : Vec3{});
         node["scale"] = to_json(scales[0]);
-        add_channel(number, "scale", add_times(motion.lives), glb_.add_points(scales), "STEP");
+        add_channel(number, "scale", add_times(motion.presence), glb_.add_points(scales), "STEP");
     }
 
     void add_nodes() {
@@ -323,7 +314,7 @@ private:
 Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options) {
     if (!(options.metres >= 0) || !(options.degrees >= 0) || options.detail < 3 || options.detail > 1000) {
         return Error{
-            Status::BadArgument, "GlbOptions", "need metres and degrees of 0 or more, detail of 3 to 1000", {}};
+            Status::BadArgument, "GlbOptions", "expected metres and degrees of 0 or more, and detail of 3 to 1000", {}};
     }
     return Exporter(player, options).run();
 }

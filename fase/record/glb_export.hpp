@@ -1,5 +1,5 @@
 #pragma once
-/// The motion of a recording as standard glTF 2.0 animation, which Blender and any viewer play.
+/// Exports a recording as a standard glTF 2.0 animation, for Blender and other viewers.
 #include <cstddef>
 #include <vector>
 
@@ -8,18 +8,18 @@
 
 namespace fase::record {
 
-/// How exact the animation is.
+/// The precision of the animation.
 struct GlbOptions {
-    double metres = 0.001;  ///< keys are left out where interpolation stays this near the recording
-    double degrees = 0.1;   ///< … and this near in turning
-    int detail = 24;        ///< segments around round shapes
+    double metres = 0.001;  ///< position tolerance: keys that interpolation restores within it are omitted
+    double degrees = 0.1;   ///< rotation tolerance
+    int detail = 24;        ///< segments around round shapes; 3 to 1000
 };
 
-/// A whole .glb file: a node for each body (name, meshes of its visuals or else of its shapes, sensors left out), one
-/// animation with translation and rotation of those that move, and steps of scale for those that come or go. Time
-/// begins at 0 with the first frame. Recordings far from the origin stand under a root node that holds the offset.
-/// Format or Io when a frame cannot be read, Capacity when it would be longer than the 4 GiB that the format allows.
-/// Holds all keys in memory.
+/// Returns a complete .glb file: one node per body (its name, and the meshes of its visuals or else of its shapes,
+/// without sensors), and one animation with translation and rotation of moving bodies and with step-wise scale (0 or 1)
+/// of bodies that are added or removed. Time is 0 at the first frame. For recordings far from the origin, the root node
+/// contains the offset. Errors: Format or Io if a frame cannot be read; BadArgument for options out of range; Capacity
+/// if the file would exceed the 4 GiB that the format allows. Keeps all keys in memory.
 Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options = {});
 
 }  // namespace fase::record

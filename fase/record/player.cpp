@@ -1,4 +1,4 @@
-/// Walks the chunks of a file and decodes blocks on demand.
+/// Scans the chunks of a file and decodes blocks on demand.
 #include "fase/record/player.hpp"
 
 #include <algorithm>
@@ -34,12 +34,12 @@ struct Player::State {
 
     [[nodiscard]] std::string at(std::uint64_t offset) const { return file.path() + ":" + std::to_string(offset); }
     Result<void> read_file_head() const;
-    /// The chunk's bytes from type to the end of its body in `bytes`; its check is right.
+    /// Reads a chunk into `bytes` and verifies its checksum.
     Result<ChunkBody> read_chunk(std::uint64_t offset);
-    /// Takes a chunk in. Whether it was the last.
-    Result<bool> take(const ChunkBody& chunk, std::uint64_t offset);
-    Result<void> take_block(const ChunkBody& chunk, std::uint64_t offset);
-    Result<void> walk();
+    /// Processes a chunk. Returns whether it is the last one.
+    Result<bool> add_chunk(const ChunkBody& chunk, std::uint64_t offset);
+    Result<void> add_block(const ChunkBody& chunk, std::uint64_t offset);
+    Result<void> scan();
     Result<void> load(const Block& block);
 
     InputFile file;
@@ -62,63 +62,62 @@ Result<void> Player::State::read_file_head() const {
     const auto version = in.get<std::uint32_t>();
     const bool same = magic.size() == file_magic.size() &&
                       std::equal(magic.begin(), magic.end(), std::as_bytes(std::span(file_magic)).begin());
-    if (!same) return Error{Status::Format, at(0), "found no recording, need a file that begins with FASEREC", {}};
+    if (!same) return Error{Status::Format, at(0), "found no recording; expected a file that begins with FASEREC", {}};
     const auto check = in.get<std::uint32_t>();
-    if (in.failed()) return Error{Status::Format, at(length), "found the end of the file in its head", {}};
+    if (in.failed()) return Error{Status::Format, at(length), "found an incomplete file head", {}};
     if (check != crc32(std::span<const std::byte>(head).first(12))) {
-        return Error{Status::Format, at(8), "found a head whose check sum is wrong", {}};
+        return Error{Status::Format, at(8), "found a file head with a wrong checksum", {}};
     }
     if (version != format_version) {
         return Error{
             Status::Format, at(8),
-            "found version " + std::to_string(version) + ", this program reads " + std::to_string(format_version),
-            "use the version of fase that made it"};
+            "found version " + std::to_string(version) + "; this program reads " + std::to_string(format_version),
+            "use the version of fase that wrote it"};
     }
     return {};
 }
 
 Result<ChunkBody> Player::State::read_chunk(std::uint64_t offset) {
     const std::uint64_t left = file.size() - std::min(offset, file.size());
-    if (left < chunk_frame_bytes) return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
+    if (left < chunk_frame_bytes) return Error{Status::Format, at(offset), "found an incomplete chunk", {}};
     std::array<std::byte, 8> head;
     if (Result<void> read = file.read(offset, head); !read) return read.error();
     ByteReader in(head);
     const ChunkType type{in.get<std::uint32_t>()};
     const std::uint64_t length = in.get<std::uint32_t>();
-    if (length > left - chunk_frame_bytes)
-        return Error{Status::Format, at(offset), "found a chunk that is cut off", {}};
+    if (length > left - chunk_frame_bytes) return Error{Status::Format, at(offset), "found an incomplete chunk", {}};
     if (length > packed_head_bytes + max_raw_bytes) {
-        return Error{Status::Format, at(offset), "found a chunk that is longer than any may be", {}};
+        return Error{Status::Format, at(offset), "found a chunk above the size limit", {}};
     }
     bytes.resize(static_cast<std::size_t>(length + chunk_frame_bytes));
     if (Result<void> read = file.read(offset, bytes); !read) return read.error();
     const std::span<const std::byte> all(bytes);
     ByteReader check(all.last(4));
     if (check.get<std::uint32_t>() != crc32(all.first(all.size() - 4))) {
-        return Error{Status::Format, at(offset), "found a chunk whose check sum is wrong", {}};
+        return Error{Status::Format, at(offset), "found a chunk with a wrong checksum", {}};
     }
     return ChunkBody{type, all.subspan(8, static_cast<std::size_t>(length))};
 }
 
-Result<void> Player::State::take_block(const ChunkBody& chunk, std::uint64_t offset) {
+Result<void> Player::State::add_block(const ChunkBody& chunk, std::uint64_t offset) {
     Result<std::vector<std::byte>> raw = unpack(chunk);
     if (!raw) return raw.error();
     ByteReader in(*raw);
     Block block{offset, in.get<std::uint64_t>(), in.get<std::uint32_t>()};
     const std::uint64_t expected = blocks.empty() ? 0 : blocks.back().first_frame + blocks.back().frames;
     if (in.failed() || block.first_frame != expected || block.frames == 0 || block.frames > max_block_frames) {
-        return Error{Status::Format, {}, "found a block out of its order", {}};
+        return Error{Status::Format, {}, "found a block out of order", {}};
     }
     blocks.push_back(block);
     return {};
 }
 
-Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
+Result<bool> Player::State::add_chunk(const ChunkBody& chunk, std::uint64_t offset) {
     const bool is_head = chunk.type == head_chunk;
     if (is_head == has_head)
-        return Error{Status::Format, {}, is_head ? "found a second head" : "found no head first", {}};
+        return Error{Status::Format, {}, is_head ? "found a second head" : "found no head as first chunk", {}};
     if (chunk.type == frames_chunk) {
-        if (Result<void> taken = take_block(chunk, offset); !taken) return taken.error();
+        if (Result<void> added = add_block(chunk, offset); !added) return added.error();
         return false;
     }
     if (chunk.type == index_chunk) return true;
@@ -127,7 +126,8 @@ Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
     if (!length) return length.error();
     table_bytes += *length;
     if (table_bytes > free_table_bytes + max_table_packing * file.size()) {
-        return Error{Status::Format, {}, "found tables that expand to more than those of a file of its size may", {}};
+        return Error{
+            Status::Format, {}, "found tables that expand to more bytes than a file of this size may contain", {}};
     }
     const Result<std::vector<std::byte>> raw = unpack(chunk);
     if (!raw) return raw.error();
@@ -142,7 +142,7 @@ Result<bool> Player::State::take(const ChunkBody& chunk, std::uint64_t offset) {
     return false;
 }
 
-Result<void> Player::State::walk() {
+Result<void> Player::State::scan() {
     if (Result<void> head = read_file_head(); !head) return head;
     std::uint64_t offset = file_head_bytes;
     Error stopped;
@@ -156,19 +156,18 @@ Result<void> Player::State::walk() {
             break;
         }
         const std::uint64_t next = offset + chunk_frame_bytes + (*chunk).bytes.size();
-        const Result<bool> taken = take(*chunk, offset);
-        if (!taken) {
-            stopped = taken.error();
+        const Result<bool> added = add_chunk(*chunk, offset);
+        if (!added) {
+            stopped = added.error();
             stopped.where = at(offset) + (stopped.where.empty() ? "" : ": " + stopped.where);
             break;
         }
-        ended = *taken;
+        ended = *added;
         offset = next;
         good_bytes = offset;
     }
     if (!has_head) {
-        if (stopped.problem.empty())
-            stopped = {Status::Format, at(offset), "found the end of the file before its first chunk", {}};
+        if (stopped.problem.empty()) stopped = {Status::Format, at(offset), "found no chunk", {}};
         stopped.status = Status::Format;
         return stopped;
     }
@@ -178,14 +177,14 @@ Result<void> Player::State::walk() {
         return {};
     }
     const Block last = blocks.empty() ? Block{} : blocks.back();
-    const std::string so_far = std::to_string(last.first_frame + last.frames) + " frames are there";
+    const std::string readable = std::to_string(last.first_frame + last.frames) + " frames are readable";
     if (!stopped.problem.empty()) {
         lost = "byte " + std::to_string(offset) + " of " + std::to_string(file.size()) + ": " + stopped.problem +
-               "; what follows is lost, " + so_far;
+               "; the rest is lost, " + readable;
     } else if (!ended) {
-        lost = "the recording was not finished: " + so_far;
+        lost = "the recording was not finished: " + readable;
     } else {
-        lost = "bytes follow the end of the recording, or its last ones are missing: " + so_far;
+        lost = "found bytes after the end of the recording, or an incomplete end: " + readable;
     }
     return {};
 }
@@ -201,7 +200,7 @@ Result<void> Player::State::load(const Block& block) {
     if (!opened) return opened.error();
     if ((*chunk).type != frames_chunk || (*opened).first_frame() != block.first_frame ||
         (*opened).frames() != block.frames) {
-        return Error{Status::Format, at(block.offset), "found another block than before: the file was changed", {}};
+        return Error{Status::Format, at(block.offset), "found a different block than before: the file was changed", {}};
     }
     reader.emplace(std::move(*opened));
     reader_block = block.offset;
@@ -232,7 +231,7 @@ Result<Player> Player::open(const std::string& name) try {
         file = std::move(unfinished);
     }
     auto state = std::make_unique<State>(std::move(*file));
-    if (Result<void> walked = state->walk(); !walked) return walked.error();
+    if (Result<void> scanned = state->scan(); !scanned) return scanned.error();
     state->bytes = {};
     return Player(std::move(state));
 } catch (const std::bad_alloc&) {
@@ -246,15 +245,15 @@ Result<void> Player::read(std::uint64_t number, Frame& frame) try {
     if (after == state.blocks.begin() || number >= frames()) {
         return Error{Status::OutOfRange,
                      path(),
-                     "found frame " + std::to_string(number) + ", need one below " + std::to_string(frames()),
+                     "found frame " + std::to_string(number) + "; expected one below " + std::to_string(frames()),
                      {}};
     }
     const Block& block = *std::prev(after);
-    const auto wanted = static_cast<std::uint32_t>(number - block.first_frame);
-    if (state.reader && state.reader_block == block.offset && state.reader->at() > wanted) state.reader.reset();
+    const auto index = static_cast<std::uint32_t>(number - block.first_frame);
+    if (state.reader && state.reader_block == block.offset && state.reader->frames_read() > index) state.reader.reset();
     if (Result<void> loaded = state.load(block); !loaded) return loaded;
-    while (state.reader->at() <= wanted) {
-        const Result<void> read = state.reader->next(frame, state.reader->at() == wanted);
+    while (state.reader->frames_read() <= index) {
+        const Result<void> read = state.reader->next(frame, state.reader->frames_read() == index);
         if (!read) {
             Error error = read.error();
             error.where = state.at(block.offset) + ": " + error.where;

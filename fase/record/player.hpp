@@ -1,5 +1,5 @@
 #pragma once
-/// Opens a recording, whole or broken, and gives any of its frames.
+/// Opens a recording, complete or damaged, and reads any of its frames.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -10,35 +10,35 @@
 
 namespace fase::record {
 
-/// A recording, read as it is asked for; holds its tables and one block. Any bytes are safe: every length is checked
-/// before it is believed. Not thread-safe.
+/// An open recording. It keeps the tables and one block in memory and reads other blocks on demand. Any bytes are safe:
+/// every length is checked before use. Not thread-safe.
 class Player {
 public:
-    /// Opens `name`; where there is none, `name.part` of a recording that was never finished. Reads the file once from
-    /// end to end and checks every chunk. Format (with the byte) when not even the head is whole, Io when it cannot be
-    /// read. Damage after the head is no error: see lost().
+    /// Opens `name`, or `name.part` of an unfinished recording if `name` does not exist. Reads the file once from start
+    /// to end and checks every chunk. Errors: Format, with the byte offset, if the head is damaged; Io if it cannot be
+    /// read. Damage after the head is not an error: see lost().
     static Result<Player> open(const std::string& name);
     Player(Player&&) noexcept;
     Player& operator=(Player&&) noexcept;
     ~Player();
 
     [[nodiscard]] const Head& head() const;
-    /// All rows, those that came during the run included.
+    /// Returns all rows, including those added during the run.
     [[nodiscard]] const Tables& tables() const;
-    /// Frames that can be read: 0 to frames() - 1.
+    /// Returns the number of readable frames: 0 to frames() - 1.
     [[nodiscard]] std::uint64_t frames() const;
-    /// The file that was opened.
+    /// Returns the path of the opened file.
     [[nodiscard]] const std::string& path() const;
-    /// Whether the recording was finished and is whole.
+    /// Returns whether the recording was finished and is undamaged.
     [[nodiscard]] bool complete() const;
-    /// One line on what is missing: "" when nothing is.
+    /// Describes in one line what is missing; "" if nothing is.
     [[nodiscard]] const std::string& lost() const;
-    /// Bytes of the file, and those of them that are good, from its start.
+    // The size of the file in bytes, and of its undamaged part from the start.
     [[nodiscard]] std::uint64_t file_bytes() const;
     [[nodiscard]] std::uint64_t good_bytes() const;
 
-    /// Replaces `frame`. Quick when frames are asked for one after the other, else as slow as a block. OutOfRange: no
-    /// such frame; Format: what is in the block makes no sense, or the file was changed; Io.
+    /// Reads a frame and replaces `frame`. Fast for frames in sequence; otherwise decodes up to one block. Errors:
+    /// OutOfRange for a frame that does not exist; Format if the block is invalid or the file was changed; Io.
     Result<void> read(std::uint64_t number, Frame& frame);
     Result<Frame> frame(std::uint64_t number);
 

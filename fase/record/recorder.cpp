@@ -1,4 +1,4 @@
-/// From a world to rows and frames.
+/// Converts a world to rows and frames.
 #include "fase/record/recorder.hpp"
 
 #include <algorithm>
@@ -6,18 +6,19 @@
 #include <unordered_map>
 #include <utility>
 
+#include "fase/core/no_index.hpp"
 #include "fase/core/version.hpp"
 
 namespace fase::record {
 namespace {
 
-constexpr std::uint32_t no_row = 0xffffffff;
-
-/// Rows of ids: by slot, the generation that the row is of.
+/// Maps ids to rows. Each slot stores the row and generation of its latest id.
 template <class Id> class RowMap {
 public:
+    /// Returns the row of an id; no_index if it has none.
     [[nodiscard]] std::uint32_t find(Id id) const {
-        return id.index < slots_.size() && slots_[id.index].generation == id.generation ? slots_[id.index].row : no_row;
+        return id.index < slots_.size() && slots_[id.index].generation == id.generation ? slots_[id.index].row
+                                                                                        : no_index;
     }
     void set(Id id, std::uint32_t row) {
         if (id.index >= slots_.size()) slots_.resize(std::size_t(id.index) + 1);
@@ -26,7 +27,7 @@ public:
 
 private:
     struct Slot {
-        std::uint32_t row = no_row;
+        std::uint32_t row = no_index;
         std::uint16_t generation = 0;
     };
     std::vector<Slot> slots_;
@@ -70,7 +71,8 @@ struct Recorder::State {
     void read_report(const World& world);
     Result<void> read_events(const World& world);
     Result<void> read_contacts(const World& world);
-    /// The row of a collider, declared now when it is new; no_row when it is gone and was never seen.
+    /// Returns the row of a collider; adds one for a new collider. Returns no_index for a removed collider without a
+    /// row.
     Result<std::uint32_t> row_of(const World& world, ColliderId id);
     template <class Pair> Result<bool> set_pair(const World& world, ColliderId a, ColliderId b, Pair& pair);
     template <class Event>
@@ -82,7 +84,7 @@ struct Recorder::State {
     std::unordered_map<std::uint64_t, BodyLook> looks;
     RowMap<BodyId> body_rows;
     RowMap<ColliderId> collider_rows;
-    std::vector<std::vector<ColliderId>> colliders;             ///< by body row, as last seen
+    std::vector<std::vector<ColliderId>> colliders;             ///< by body row, as of the last refresh
     std::unordered_map<std::string, std::uint32_t> shape_rows;  ///< by their bytes
     std::vector<BodyState> bodies;
     std::vector<ContactState> contact_states;
@@ -90,14 +92,14 @@ struct Recorder::State {
 };
 
 Result<std::uint32_t> Recorder::State::shape_row(const Shape& shape) {
-    const RecordedShape told = recorded(shape);
+    const RecordedShape stored = recorded(shape);
     ByteWriter bytes;
-    write(bytes, told);
+    write(bytes, stored);
     const auto letters = bytes.bytes();
-    const auto [found, is_new] =
+    const auto [found, inserted] =
         shape_rows.try_emplace(std::string(reinterpret_cast<const char*>(letters.data()), letters.size()), 0);
-    if (!is_new) return found->second;
-    const Result<std::uint32_t> row = writer.add(told);
+    if (!inserted) return found->second;
+    const Result<std::uint32_t> row = writer.add(stored);
     if (row) found->second = *row;
     return row;
 }
@@ -107,39 +109,39 @@ Result<std::uint32_t> Recorder::State::add_collider(const World& world, Collider
     if (!state) return state.error();
     const Result<std::uint32_t> shape = shape_row(*(*state).shape);
     if (!shape) return shape;
-    RecordedCollider told;
-    told.index = id.index;
-    told.generation = id.generation;
-    told.sensor = (*state).def.sensor;
-    told.body = body_row;
-    told.shape = *shape;
-    told.first_frame = writer.frames();
-    told.pose = (*state).def.pose;
-    told.pose.rotation = normalized(told.pose.rotation);
-    const Result<std::uint32_t> row = writer.add(told);
+    RecordedCollider collider;
+    collider.index = id.index;
+    collider.generation = id.generation;
+    collider.sensor = (*state).def.sensor;
+    collider.body = body_row;
+    collider.shape = *shape;
+    collider.first_frame = writer.frames();
+    collider.pose = (*state).def.pose;
+    collider.pose.rotation = normalized(collider.pose.rotation);
+    const Result<std::uint32_t> row = writer.add(collider);
     if (row) collider_rows.set(id, *row);
     return row;
 }
 
 Result<std::uint32_t> Recorder::State::add_body(const World& world, const BodyState& body) {
-    RecordedBody told;
-    told.index = body.id.index;
-    told.generation = body.id.generation;
-    told.kind = static_cast<std::uint8_t>(body.kind);
-    told.user = body.user;
-    told.mass = body.mass;
+    RecordedBody recorded_body;
+    recorded_body.index = body.id.index;
+    recorded_body.generation = body.id.generation;
+    recorded_body.kind = static_cast<std::uint8_t>(body.kind);
+    recorded_body.user = body.user;
+    recorded_body.mass = body.mass;
     const auto look = looks.find(key_of(body.id));
     if (look != looks.end()) {
-        told.name = look->second.name;
-        told.colour = look->second.colour;
+        recorded_body.name = look->second.name;
+        recorded_body.colour = look->second.colour;
     }
-    const Result<std::uint32_t> row = writer.add(told);
+    const Result<std::uint32_t> row = writer.add(recorded_body);
     if (!row) return row;
     body_rows.set(body.id, *row);
     colliders.resize(std::size_t(*row) + 1);
     colliders[*row] = world.colliders_of(body.id);
     for (const ColliderId id : colliders[*row]) {
-        if (collider_rows.find(id) != no_row) continue;
+        if (collider_rows.find(id) != no_index) continue;
         if (Result<std::uint32_t> added = add_collider(world, id, *row); !added) return added;
     }
     if (look != looks.end()) {
@@ -156,19 +158,19 @@ Result<void> Recorder::State::add_bodies(const World& world) {
     bodies.clear();
     world.read_bodies(bodies);
     frame.bodies.clear();
-    bool rising = true;
+    bool ascending = true;
     for (const BodyState& body : bodies) {
         std::uint32_t row = body_rows.find(body.id);
-        if (row == no_row) {
+        if (row == no_index) {
             const Result<std::uint32_t> added = add_body(world, body);
             if (!added) return added.error();
             row = *added;
         }
-        rising = rising && (frame.bodies.empty() || frame.bodies.back().row < row);
+        ascending = ascending && (frame.bodies.empty() || frame.bodies.back().row < row);
         frame.bodies.push_back(
             {row, static_cast<std::uint8_t>(body.kind), body.awake, body.quarantined, body.island + 1, body.pose});
     }
-    if (!rising) {
+    if (!ascending) {
         std::sort(frame.bodies.begin(), frame.bodies.end(),
                   [](const BodyFrame& a, const BodyFrame& b) { return a.row < b.row; });
     }
@@ -185,7 +187,7 @@ Result<void> Recorder::State::refresh_colliders(const World& world) {
             if (Result<void> ended = writer.end_collider(collider_rows.find(id)); !ended) return ended;
         }
         for (const ColliderId id : now) {
-            if (collider_rows.find(id) != no_row) continue;
+            if (collider_rows.find(id) != no_index) continue;
             if (Result<std::uint32_t> added = add_collider(world, id, row); !added) return added.error();
         }
         colliders[row] = std::move(now);
@@ -206,16 +208,16 @@ void Recorder::State::read_report(const World& world) {
 
 Result<std::uint32_t> Recorder::State::row_of(const World& world, ColliderId id) {
     const std::uint32_t row = collider_rows.find(id);
-    if (row != no_row) return row;
+    if (row != no_index) return row;
     const Result<ColliderState> state = world.collider(id);
-    if (!state) return no_row;
+    if (!state) return no_index;
     const std::uint32_t body_row = body_rows.find((*state).body);
-    if (body_row == no_row) return no_row;
+    if (body_row == no_index) return no_index;
     colliders[body_row].push_back(id);
     return add_collider(world, id, body_row);
 }
 
-/// Whether both are known.
+/// Sets the rows of a pair. Returns whether both colliders have one.
 template <class Pair>
 Result<bool> Recorder::State::set_pair(const World& world, ColliderId a, ColliderId b, Pair& pair) {
     const Result<std::uint32_t> row_a = row_of(world, a);
@@ -224,7 +226,7 @@ Result<bool> Recorder::State::set_pair(const World& world, ColliderId a, Collide
     if (!row_b) return row_b.error();
     pair.a = *row_a;
     pair.b = *row_b;
-    return pair.a != no_row && pair.b != no_row;
+    return pair.a != no_index && pair.b != no_index;
 }
 
 template <class Event>
@@ -254,10 +256,10 @@ Result<void> Recorder::State::read_events(const World& world) {
     }
     frame.hits.clear();
     for (const HitEvent& hit : events.hits) {
-        HitFrame told{0, 0, hit.point, hit.normal, hit.speed, hit.impulse};
-        const Result<bool> known = set_pair(world, hit.a, hit.b, told);
+        HitFrame recorded_hit{0, 0, hit.point, hit.normal, hit.speed, hit.impulse};
+        const Result<bool> known = set_pair(world, hit.a, hit.b, recorded_hit);
         if (!known) return known.error();
-        if (*known) frame.hits.push_back(told);
+        if (*known) frame.hits.push_back(recorded_hit);
     }
     return {};
 }
@@ -269,16 +271,16 @@ Result<void> Recorder::State::read_contacts(const World& world) {
     world.read_contacts(contact_states);
     for (const ContactState& contact : contact_states) {
         if (contact.sensor) continue;
-        ContactFrame told;
-        const Result<bool> known = set_pair(world, contact.a, contact.b, told);
+        ContactFrame recorded_contact;
+        const Result<bool> known = set_pair(world, contact.a, contact.b, recorded_contact);
         if (!known) return known.error();
         if (!*known) continue;
-        told.normal = contact.normal;
-        told.count = std::clamp(contact.count, 0, 4);
-        told.points = contact.points;
-        told.separations = contact.separations;
-        told.impulses = contact.impulses;
-        frame.contacts.push_back(told);
+        recorded_contact.normal = contact.normal;
+        recorded_contact.count = std::clamp(contact.count, 0, 4);
+        recorded_contact.points = contact.points;
+        recorded_contact.separations = contact.separations;
+        recorded_contact.impulses = contact.impulses;
+        frame.contacts.push_back(recorded_contact);
     }
     return {};
 }
@@ -302,22 +304,22 @@ Result<Recorder> Recorder::create(const std::string& name, const World& world, c
     for (const BodyLook& look : head.looks) {
         for (const Visual& visual : look.visuals) {
             if (visual.mesh >= head.meshes.size()) {
-                return Error{
-                    Status::BadArgument,
-                    "RecordingHead.looks",
-                    "a visual names mesh " + std::to_string(visual.mesh) + " of " + std::to_string(head.meshes.size()),
-                    {}};
+                return Error{Status::BadArgument,
+                             "RecordingHead.looks",
+                             "found a visual with mesh " + std::to_string(visual.mesh) + "; expected one below " +
+                                 std::to_string(head.meshes.size()),
+                             {}};
             }
         }
     }
-    Head told;
-    told.title = head.title;
-    told.program = "fase " + std::string(library_version());
-    told.time_step = world.settings().time_step;
-    told.gravity = world.settings().gravity;
-    for (const std::string_view stage : stage_names) told.stage_names.emplace_back(stage);
-    for (const Counter& counter : counters) told.counter_names.emplace_back(counter.name);
-    Result<RecordingWriter> writer = RecordingWriter::create(name, std::move(told), options);
+    Head file_head;
+    file_head.title = head.title;
+    file_head.program = "fase " + std::string(library_version());
+    file_head.time_step = world.settings().time_step;
+    file_head.gravity = world.settings().gravity;
+    for (const std::string_view stage : stage_names) file_head.stage_names.emplace_back(stage);
+    for (const Counter& counter : counters) file_head.counter_names.emplace_back(counter.name);
+    Result<RecordingWriter> writer = RecordingWriter::create(name, std::move(file_head), options);
     if (!writer) return writer.error();
     auto state = std::make_unique<State>(std::move(*writer));
     state->contacts = options.contacts;

@@ -1,5 +1,5 @@
 #pragma once
-/// Records a world: made once, told after every step, finished at the end.
+/// Records a world: create once, add a frame after every step, finish at the end.
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,49 +10,50 @@
 
 namespace fase::record {
 
-/// One mesh of a body for the picture.
+/// One mesh of a body, for drawing.
 struct Visual {
     std::uint32_t mesh = 0;  ///< index in RecordingHead::meshes
     LocalPose pose;          ///< of the mesh in the body
     Colour colour;
 };
-/// How a body is called and looks. Bodies without one are drawn by their shapes, in colours that the viewer chooses.
+/// The name and appearance of a body. A body without one is drawn as its shapes, in colours that the viewer selects.
 struct BodyLook {
     BodyId body;
     std::string name;
     Colour colour;
     std::vector<Visual> visuals;  ///< drawn instead of the shapes; may be empty
 };
-/// What a world does not know of itself.
+/// Information for the recording that the world does not contain.
 struct RecordingHead {
     std::string title;
     std::vector<RecordedMesh> meshes;
-    std::vector<BodyLook> looks;  ///< in any order; may name bodies that are made later
+    std::vector<BodyLook> looks;  ///< in any order; may refer to bodies that are added later
 };
 
-/// Reads a world through its public functions and writes `NAME.part`, which finish() renames to `NAME`. Killed at any
-/// moment, it leaves a file that opens up to its last flushed block. Bodies may come and go between frames; colliders
-/// that were put on or taken off a living body show from the next block on. One thread at a time.
+/// Reads a world through its public functions and writes `NAME.part`, which finish() renames to `NAME`. If the program
+/// is killed, the file opens up to its last flushed block. Bodies may be added and removed between frames; colliders
+/// that are added to or removed from an existing body take effect from the next block on. One thread at a time.
 class Recorder {
 public:
-    /// Writes head and tables of the world as it is; frame 0 is what the first add_frame() finds.
-    /// Io: cannot write there; Busy: another program records to that name; BadArgument: options out of range, a visual
-    /// of a mesh that is not there.
+    /// Writes head and tables for the current state of the world. The first add_frame() adds frame 0. Errors: Io if the
+    /// file cannot be written; Busy if another program records to that name; BadArgument for options out of range or a
+    /// visual with a missing mesh.
     static Result<Recorder> create(const std::string& name, const World& world, const RecordingHead& head = {},
                                    const RecorderOptions& options = {});
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
-    /// Finishes, if that was not done; errors are lost then.
+    /// Calls finish() if necessary; ignores errors.
     ~Recorder();
 
-    /// The world as it is now, with the report and events of its last step. It must be the world of create(). Errors:
-    /// Io, with frames and bytes written so far (they open); Capacity, when more than 2^21 bodies ever lived.
+    /// Adds the current state of the world, with the report and events of its last step. It must be the world of
+    /// create(). Errors: Io, with the frames and bytes written so far (the file opens up to there); Capacity if more
+    /// than 2^21 bodies were ever added.
     Result<void> add_frame(const World& world);
-    /// Writes what is held back.
+    /// Writes all pending frames.
     Result<void> flush();
-    /// Writes the rest and the index, renames. Later calls do nothing.
+    /// Writes the rest and the index and renames the file. Later calls do nothing.
     Result<void> finish();
-    /// What was written so far.
+    /// Returns the writer, for its counts and its path.
     [[nodiscard]] const RecordingWriter& writer() const;
 
 private:

@@ -1,4 +1,4 @@
-/// Reading, judging and writing traces of boxes.
+/// Reads, validates and writes box traces.
 #include "fase/record/trace.hpp"
 
 #include <fmt/format.h>
@@ -12,29 +12,29 @@ namespace fase::record {
 namespace {
 
 constexpr std::uint64_t head_size = 16, box_size = 24;
-constexpr std::size_t block_boxes = 16384;  // read at once
+constexpr std::size_t block_boxes = 16384;  // read per call
 constexpr std::uint8_t known_flags = trace_static | trace_asleep;
-constexpr std::array<std::string_view, 6> number_names{"least x",   "least y",   "least z",
-                                                       "largest x", "largest y", "largest z"};
+constexpr std::array<std::string_view, 6> number_names{"lower x", "lower y", "lower z",
+                                                       "upper x", "upper y", "upper z"};
 
 constexpr std::uint64_t padded(std::uint64_t boxes) { return (boxes + 3) / 4 * 4; }
 
-/// What is wrong with a box, and with which of its numbers.
+/// The first invalid number of a box.
 struct Fault {
     std::size_t number = 0;
-    std::string problem;  ///< "" when all is well
+    std::string problem;  ///< "" if the box is valid
 };
 
 Fault fault_of(const Aabb& box) {
     const std::array<float, 6> numbers{box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z};
     for (std::size_t i = 0; i < 6; ++i)
-        if (std::isnan(numbers[i])) return {i, fmt::format("found NaN as {}, need a number", number_names[i])};
+        if (std::isnan(numbers[i])) return {i, fmt::format("found NaN as {}; expected a number", number_names[i])};
     for (std::size_t i = 0; i < 3; ++i) {
         if (numbers[i] > numbers[i + 3])
-            return {i, fmt::format("found {} {} above {} {}, need at most that", number_names[i], numbers[i],
+            return {i, fmt::format("found {} {} above {} {}; expected lower <= upper", number_names[i], numbers[i],
                                    number_names[i + 3], numbers[i + 3])};
         if (numbers[i] == Aabb::infinity || numbers[i + 3] == -Aabb::infinity)
-            return {i, fmt::format("found {} {} and {} {}, need a box that is not at infinity", number_names[i],
+            return {i, fmt::format("found {} {} and {} {}; expected a box that is not at infinity", number_names[i],
                                    numbers[i], number_names[i + 3], numbers[i + 3])};
     }
     return {};
@@ -42,12 +42,13 @@ Fault fault_of(const Aabb& box) {
 
 }  // namespace
 
-Error TraceReader::broken(std::uint64_t offset, std::string problem, std::string remedy) const {
+Error TraceReader::format_error(std::uint64_t offset, std::string problem, std::string remedy) const {
     return {Status::Format, fmt::format("{}:{}", path(), offset), std::move(problem), std::move(remedy)};
 }
 
-Error TraceReader::broken_body(std::uint32_t body, std::size_t number, const std::string& problem) const {
-    return broken(offset_of(frame_, body) + number * 4, fmt::format("frame {}, body {}: {}", frame_, body, problem));
+Error TraceReader::body_error(std::uint32_t body, std::size_t number, const std::string& problem) const {
+    return format_error(offset_of(frame_, body) + number * 4,
+                        fmt::format("frame {}, body {}: {}", frame_, body, problem));
 }
 
 std::uint64_t TraceReader::offset_of(std::uint32_t frame, std::uint32_t body) const {
@@ -70,31 +71,35 @@ Result<void> TraceReader::read_head() {
     const auto letters = std::as_bytes(std::span(trace_magic));
     const std::size_t known = std::min(begin.size(), letters.size());
     if (!std::equal(begin.begin(), begin.begin() + static_cast<std::ptrdiff_t>(known), letters.begin()))
-        return broken(0, "found another kind of file, need a trace, which begins with AABT");
-    if (size < head_size) return broken(size, fmt::format("found {} bytes, need a head of {}", size, head_size));
+        return format_error(0, "found another kind of file; expected a trace, which begins with AABT");
+    if (size < head_size)
+        return format_error(size, fmt::format("found {} bytes; expected a head of {}", size, head_size));
 
     ByteReader numbers(std::span<const std::byte>(head).subspan(4));
     const auto version = numbers.get<std::uint32_t>(), boxes = numbers.get<std::uint32_t>();
     frames_ = numbers.get<std::uint32_t>();
     if (version != trace_version)
-        return broken(4, fmt::format("found version {}, this program reads {}", version, trace_version));
-    if (boxes == 0) return broken(8, "found 0 boxes, need at least 1");
-    if (frames_ == 0) return broken(12, "found 0 frames, need at least 1", "its writer may not have come to the end");
+        return format_error(4, fmt::format("found version {}; this program reads {}", version, trace_version));
+    if (boxes == 0) return format_error(8, "found 0 boxes; expected at least 1");
+    if (frames_ == 0) return format_error(12, "found 0 frames; expected at least 1", "the trace may be unfinished");
 
-    // Boxes stay below 2^32, so a frame below 2^37; frames are counted by division: nothing can overflow.
+    // No overflow: there are fewer than 2^32 boxes, so a frame is below 2^37 bytes, and a division counts the frames.
     head_bytes_ = head_size + padded(boxes);
     const std::uint64_t frame_bytes = boxes * box_size;
     if (size < head_bytes_)
-        return broken(head_size, fmt::format("found {} bytes, need flags of {} boxes", size - head_size, boxes));
+        return format_error(
+            head_size, fmt::format("found {} bytes of flags; expected {}, a byte per box", size - head_size, boxes));
     const std::uint64_t whole = (size - head_bytes_) / frame_bytes, rest = (size - head_bytes_) % frame_bytes;
     if (whole < frames_) {
-        return broken(size, fmt::format("frame {}, body {}: found the end of the file after {} frames and {} bytes, "
-                                        "need {} frames of {} bytes",
+        return format_error(size,
+                            fmt::format("frame {}, body {}: found the end of the file after {} frames and {} bytes; "
+                                        "expected {} frames of {} bytes",
                                         whole, rest / box_size, whole, rest, frames_, frame_bytes));
     }
     if (whole > frames_ || rest != 0) {
         const std::uint64_t end = head_bytes_ + frames_ * frame_bytes;
-        return broken(end, fmt::format("found {} bytes behind the last of {} frames, need none", size - end, frames_));
+        return format_error(
+            end, fmt::format("found {} bytes after the last of {} frames; expected none", size - end, frames_));
     }
 
     std::vector<std::byte> flags(static_cast<std::size_t>(head_bytes_ - head_size));
@@ -102,9 +107,10 @@ Result<void> TraceReader::read_head() {
     for (std::size_t i = 0; i < flags.size(); ++i) {
         const auto flag = std::to_integer<unsigned>(flags[i]);
         if (i < boxes && (flag & ~unsigned(known_flags)) != 0)
-            return broken(head_size + i, fmt::format("body {}: found flags {}, need 0 to {}", i, flag, known_flags));
+            return format_error(head_size + i,
+                                fmt::format("body {}: found flags {}; expected 0 to {}", i, flag, known_flags));
         if (i >= boxes && flag != 0)
-            return broken(head_size + i, fmt::format("found {} behind the flags, need 0", flag));
+            return format_error(head_size + i, fmt::format("found {} after the flags; expected 0", flag));
     }
     flags_.resize(boxes);
     for (std::size_t i = 0; i < boxes; ++i) flags_[i] = std::to_integer<std::uint8_t>(flags[i]);
@@ -130,18 +136,18 @@ Result<bool> TraceReader::next(std::vector<Aabb>& out) {
             for (Vec3* corner : {&box.lo, &box.hi})
                 *corner = {numbers.get<float>(), numbers.get<float>(), numbers.get<float>()};
             const auto body = static_cast<std::uint32_t>(i);
-            const bool stands = (flags_[i] & trace_static) != 0;
+            const bool is_static = (flags_[i] & trace_static) != 0;
             if (const Fault fault = fault_of(box); !fault.problem.empty()) {
                 out.clear();
-                return broken_body(body, fault.number, fault.problem);
+                return body_error(body, fault.number, fault.problem);
             }
-            if (stands && frame_ == 0) {
+            if (is_static && frame_ == 0) {
                 if (first_static_.size() == statics) first_static_.push_back(box);
-            } else if (stands && !(statics < first_static_.size() && first_static_[statics] == box)) {
+            } else if (is_static && !(statics < first_static_.size() && first_static_[statics] == box)) {
                 out.clear();
-                return broken_body(body, 0, "found a static body whose box moved, need the box of the first frame");
+                return body_error(body, 0, "found a static body whose box moved; expected the box of the first frame");
             }
-            statics += stands ? 1 : 0;
+            statics += is_static ? 1 : 0;
             out.push_back(box);
         }
     }
@@ -151,11 +157,12 @@ Result<bool> TraceReader::next(std::vector<Aabb>& out) {
 
 Result<TraceWriter> TraceWriter::create(const std::string& name, std::size_t boxes) {
     if (boxes == 0 || boxes >= std::numeric_limits<std::uint32_t>::max())
-        return Error{Status::BadArgument, name, fmt::format("found {} boxes, need 1 to 2^32 - 2", boxes), {}};
+        return Error{Status::BadArgument, name, fmt::format("found {} boxes; expected 1 to 2^32 - 2", boxes), {}};
     Result<OutputFile> file = OutputFile::create(name);
     if (!file) return file.error();
     if (file->is_stream())
-        return Error{Status::Io, name, "found a device or a pipe, need a file: its head is written last", {}};
+        return Error{
+            Status::Io, name, "found a device or a pipe; expected a file, because its head is written last", {}};
     TraceWriter writer(*std::move(file), boxes);
     ByteWriter head;
     head.put_letters(trace_magic);
@@ -172,10 +179,10 @@ Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
     if (boxes.size() != boxes_)
         return Error{Status::BadArgument,
                      fmt::format("frame {}", frames_),
-                     fmt::format("found {} boxes, need {} as in each frame", boxes.size(), boxes_),
+                     fmt::format("found {} boxes; expected {} in every frame", boxes.size(), boxes_),
                      {}};
     if (frames_ == std::numeric_limits<std::uint32_t>::max())
-        return Error{Status::Capacity, path(), "found no room for another frame, need at most 2^32 - 1", {}};
+        return Error{Status::Capacity, path(), "found too many frames; expected at most 2^32 - 1", {}};
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (const Fault fault = fault_of(boxes[i]); !fault.problem.empty())
             return Error{Status::BadArgument, fmt::format("frame {}, body {}", frames_, i), fault.problem, {}};
@@ -202,20 +209,18 @@ Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
 }
 
 Result<void> TraceWriter::finish(std::span<const std::uint8_t> flags, bool durable) {
-    if (frames_ == 0) return Error{Status::BadArgument, path(), "found no frame, need at least 1", {}};
+    if (frames_ == 0) return Error{Status::BadArgument, path(), "found no frame; expected at least 1", {}};
     if (flags.size() != boxes_)
-        return Error{Status::BadArgument, path(), fmt::format("found {} flags, need {}", flags.size(), boxes_), {}};
+        return Error{Status::BadArgument, path(), fmt::format("found {} flags; expected {}", flags.size(), boxes_), {}};
     for (std::size_t i = 0; i < boxes_; ++i) {
         if ((flags[i] & ~unsigned(known_flags)) != 0)
             return Error{Status::BadArgument,
                          fmt::format("body {}", i),
-                         fmt::format("found flags {}, need 0 to {}", flags[i], known_flags),
+                         fmt::format("found flags {}; expected 0 to {}", flags[i], known_flags),
                          {}};
         if ((flags[i] & trace_static) != 0 && moved(i))
-            return Error{Status::BadArgument,
-                         fmt::format("body {}", i),
-                         "found the static flag of one whose box moved, need it without",
-                         {}};
+            return Error{
+                Status::BadArgument, fmt::format("body {}", i), "found the static flag of a body whose box moved", {}};
     }
     ByteWriter count;
     count.put(frames_);

@@ -10,7 +10,7 @@ Result<WorldTrace> WorldTrace::create(const std::string& name, const World& worl
     for (const BodyId body : world.bodies())
         for (const ColliderId collider : world.colliders_of(body)) tracked.push_back({body, collider});
     if (tracked.empty())
-        return Error{Status::BadArgument, name, "found a world without colliders, need one to trace", {}};
+        return Error{Status::BadArgument, name, "found a world without colliders; expected at least one collider", {}};
     Result<TraceWriter> writer = TraceWriter::create(name, tracked.size());
     if (!writer) return writer.error();
     WorldTrace trace(*std::move(writer));
@@ -36,8 +36,8 @@ Result<void> WorldTrace::add_frame(const World& world) {
 Result<void> WorldTrace::finish() {
     std::vector<std::uint8_t> flags;
     for (std::size_t i = 0; i < tracked_.size(); ++i) {
-        const bool stands = writer_.frames() > 0 && !writer_.moved(i);
-        flags.push_back(!stands                 ? std::uint8_t{0}
+        const bool unmoved = writer_.frames() > 0 && !writer_.moved(i);
+        flags.push_back(!unmoved                ? std::uint8_t{0}
                         : tracked_[i].is_static ? std::uint8_t{trace_static}
                         : tracked_[i].rests     ? std::uint8_t{trace_asleep}
                                                 : std::uint8_t{0});

@@ -8,17 +8,17 @@
 
 namespace fase::record {
 
-/// Writes the exact boxes of the colliders that a world has in the beginning, frame after frame: what a broad phase
-/// without margins would be given. At the end those of static bodies are flagged static, those of bodies that rested in
-/// all frames asleep.
+/// Writes the exact boxes of the colliders that a world has at the start, frame by frame: the input of a broad phase
+/// without margins. finish() flags the boxes of static bodies as static, and those of bodies that rested in all frames
+/// as asleep.
 class WorldTrace {
 public:
-    /// Io and Busy as of TraceWriter; BadArgument for a world without colliders.
+    /// Creates a trace. Errors: Io and Busy as in TraceWriter::create(); BadArgument for a world without colliders.
     static Result<WorldTrace> create(const std::string& name, const World& world);
-    /// The world as it is now. BadHandle when one of the colliders is gone, Io when it cannot be written; the frames so
-    /// far can still be completed.
+    /// Appends the current state of the world. Errors: BadHandle if one of the colliders was removed; Io if the frame
+    /// cannot be written. finish() then completes the previous frames.
     Result<void> add_frame(const World& world);
-    /// Writes the flags and gives the file its name.
+    /// Writes the flags and renames the file to its final name.
     Result<void> finish();
 
     [[nodiscard]] const TraceWriter& writer() const { return writer_; }

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes made by rule: the default castle, benchmark piles, things to look at.
+/// Generated scenes: the default castle, benchmark scenes, demonstrations.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace fase::scene {
 
-/// How much of a scene, and which of its kind.
+/// Size and random seed of a generated scene.
 struct GenerateOptions {
-    std::size_t count =
-        0;  ///< dynamic bodies, roughly (kinds of a fixed layout round it); 0: the kind's own number; at most 1e6
-    std::uint64_t seed = 1;  ///< equal seeds give equal scenes, bit for bit, on every machine
+    /// Approximate number of dynamic bodies (kinds with a fixed layout round it); 0: the kind's default; at most 1e6.
+    std::size_t count = 0;
+    std::uint64_t seed = 1;  ///< the same seed gives the same scene, bit for bit, on every machine
 };
 
-/// One kind of scene that generate() makes.
+/// One kind of scene for generate().
 struct Generator {
     std::string_view name;
     std::string_view description;                   ///< one sentence
@@ -24,11 +24,10 @@ struct Generator {
     Scene (*make)(const GenerateOptions& options);  ///< count is above 0 here
 };
 
-/// THE list of kinds; help texts, docs and tests loop over it. The first is the default scene.
+/// Returns the only list of kinds; help texts, docs and tests loop over it. The first is the default scene.
 [[nodiscard]] std::span<const Generator> generators();
 
-/// A scene of that kind. BadArgument with the known kinds when there is none of that name, OutOfRange for a count above
-/// 1e6.
+/// Generates a scene. BadArgument, with all known kinds, for an unknown kind; OutOfRange for a count above 1e6.
 Result<Scene> generate(std::string_view kind, const GenerateOptions& options = {});
 
 }  // namespace fase::scene

@@ -1,4 +1,4 @@
-/// The way into the glTF reader: opens the file, catches what ends the reading.
+/// Entry point of the glTF reader: opens the file and converts exceptions to errors.
 #include "fase/scene/gltf.hpp"
 
 #include <new>
@@ -10,9 +10,9 @@
 namespace fase::scene {
 
 Result<Scene> read_gltf(const std::string& path) {
-    constexpr std::size_t most = std::size_t{1} << 32;
+    constexpr std::size_t max_bytes = std::size_t{1} << 32;
     try {
-        const Result<std::vector<std::byte>> bytes = read_file(path, most);
+        const Result<std::vector<std::byte>> bytes = read_file(path, max_bytes);
         if (!bytes) return bytes.error();
         return read_gltf(*bytes, folder_of(path), path);
     } catch (const std::bad_alloc&) {

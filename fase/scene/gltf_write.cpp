@@ -1,13 +1,15 @@
-/// Lays a scene out as a glTF document: shapes, materials, meshes around the nodes that NodeWriter makes.
+/// Writes a scene as a glTF document: shapes, materials, meshes, and the nodes of NodeWriter.
 #include "fase/scene/gltf_write.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
 #include <map>
 #include <new>
 
 #include "fase/core/detail/files.hpp"
+#include "fase/core/no_index.hpp"
 #include "fase/geometry/mesh.hpp"
 #include "fase/scene/detail/uri.hpp"
 #include "fase/scene/gltf/node_writer.hpp"
@@ -20,36 +22,61 @@ using gltf::FilterKey;
 using gltf::JsonText;
 using gltf::MaterialKey;
 
-constexpr std::uint32_t none = 0xffffffff;
-
-/// Whether every index inside the scene leads somewhere.
+/// Checks every index in the scene.
 Result<void> check_indices(const Scene& scene) {
     const auto bad = [](std::string where, std::size_t found, std::size_t size) {
-        return Error{
-            Status::OutOfRange, std::move(where), fmt::format("found index {}, need one below {}", found, size), {}};
+        return Error{Status::OutOfRange,
+                     std::move(where),
+                     fmt::format("found index {}; expected one below {}", found, size),
+                     {}};
     };
-    const auto check = [&](const Visual& visual) { return visual.mesh < scene.meshes.size(); };
+    const auto has_mesh = [&](const Visual& visual) { return visual.mesh < scene.meshes.size(); };
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         for (const Collider& collider : scene.bodies[i].colliders) {
             if (collider.shape >= scene.shapes.size())
                 return bad(fmt::format("bodies[{}].colliders", i), collider.shape, scene.shapes.size());
         }
         for (const Visual& visual : scene.bodies[i].visuals) {
-            if (!check(visual)) return bad(fmt::format("bodies[{}].visuals", i), visual.mesh, scene.meshes.size());
+            if (!has_mesh(visual)) return bad(fmt::format("bodies[{}].visuals", i), visual.mesh, scene.meshes.size());
         }
     }
     for (const Visual& visual : scene.scenery) {
-        if (!check(visual)) return bad("scenery", visual.mesh, scene.meshes.size());
+        if (!has_mesh(visual)) return bad("scenery", visual.mesh, scene.meshes.size());
     }
     for (const Mesh& mesh : scene.meshes) {
         if (mesh.positions.empty())
-            return Error{Status::BadArgument, "meshes", "found a mesh without points, need at least one", {}};
+            return Error{Status::BadArgument, "meshes", "found a mesh without points; expected at least one", {}};
         for (const std::uint32_t index : mesh.indices) {
             if (index >= mesh.positions.size()) return bad("meshes", index, mesh.positions.size());
         }
     }
     return {};
 }
+
+/// Writes type and parameters of a shape in KHR_implicit_shapes; the caller closes the parameters.
+struct ShapeFields {
+    JsonText& out;
+
+    JsonText& type(std::string_view name) const { return out.key("type").text(name).key(name).open('{'); }
+    void round(std::string_view name, float half_height, float radius) const {
+        type(name)
+            .key("height")
+            .number(2.0 * double(half_height))
+            .key("radiusTop")
+            .number(radius)
+            .key("radiusBottom")
+            .number(radius);
+    }
+    void operator()(const Sphere& sphere) const { type("sphere").key("radius").number(sphere.radius); }
+    void operator()(const Box& box) const { type("box").key("size").vector(to_double(box.half) * 2.0); }
+    void operator()(const Capsule& capsule) const { round("capsule", capsule.half_length, capsule.radius); }
+    void operator()(const Cylinder& cylinder) const { round("cylinder", cylinder.half_height, cylinder.radius); }
+    void operator()(const HalfSpace&) const { type("plane"); }
+    void operator()(const ConvexHull&) const {
+        assert(false && "a hull is written as the mesh of a node");
+        type("plane");
+    }
+};
 
 class Writer {
 public:
@@ -60,13 +87,14 @@ public:
         JsonText out;
         write_document(out, form);
         if (!out.all_finite() || !nodes_.nodes().all_finite() || !accessors_.all_finite()) {
-            return Error{Status::BadArgument, "scene", "found a number that is not finite, need finite numbers", {}};
+            return Error{
+                Status::BadArgument, "scene", "found a number that is not finite; expected finite numbers", {}};
         }
         return form == GltfForm::Text ? out.str() : in_container(out.str());
     }
 
 private:
-    /// Adds numbers to the buffer and a view of them; returns the view's number.
+    /// Appends numbers to the buffer and adds a view of them; returns the view's index.
     template <class T> std::uint32_t add_view(std::span<const T> values, int target) {
         views_.open('{').key("buffer").number(0);
         views_.key("byteOffset")
@@ -82,7 +110,7 @@ private:
         return view_count_++;
     }
 
-    /// Accessors of a mesh's positions and indices; the second is none for a mesh without triangles.
+    /// Adds accessors of a mesh's positions and indices; the second is no_index for a mesh without triangles.
     std::pair<std::uint32_t, std::uint32_t> add_geometry(std::span<const Vec3> positions,
                                                          std::span<const std::uint32_t> indices) {
         static_assert(std::endian::native == std::endian::little && sizeof(Vec3) == 12, "glTF data is little-endian");
@@ -100,7 +128,7 @@ private:
             .number(positions.size());
         accessors_.key("type").text("VEC3").key("min").vector(lo).key("max").vector(hi).close('}');
         const std::uint32_t first = accessor_count_++;
-        if (indices.empty()) return {first, none};
+        if (indices.empty()) return {first, no_index};
         accessors_.open('{')
             .key("bufferView")
             .number(add_view(indices, 34963))
@@ -128,16 +156,16 @@ private:
                 .key("POSITION")
                 .number(geometry.first)
                 .close('}');
-            if (geometry.second != none) meshes_.key("indices").number(geometry.second);
+            if (geometry.second != no_index) meshes_.key("indices").number(geometry.second);
             if (material) meshes_.key("material").number(*material);
             meshes_.close('}').close(']').close('}');
         };
         std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> geometries;
-        for (const auto& [mesh, colour] : nodes_.pictures()) {
+        for (const auto& [mesh, colour] : nodes_.coloured_meshes()) {
             const Mesh& m = scene_.meshes[mesh];
-            const auto [at, fresh] = geometries.try_emplace(mesh, none, none);
-            if (fresh) at->second = add_geometry(m.positions, m.indices);
-            write(m.name, at->second, colour);
+            const auto [entry, inserted] = geometries.try_emplace(mesh, no_index, no_index);
+            if (inserted) entry->second = add_geometry(m.positions, m.indices);
+            write(m.name, entry->second, colour);
         }
         for (const auto& [shape, node] : nodes_.hull_nodes()) {
             const TriangleMesh mesh = triangles(scene_.shapes[shape]);
@@ -149,34 +177,9 @@ private:
         while (data_.size() % 4 != 0) data_.push_back(std::byte{0});
     }
 
-    void write_shape(JsonText& out, const Shape& shape) const {
+    static void write_shape(JsonText& out, const Shape& shape) {
         out.open('{');
-        const auto type = [&](std::string_view name) -> JsonText& {
-            return out.key("type").text(name).key(name).open('{');
-        };
-        if (const auto* sphere = std::get_if<Sphere>(&shape))
-            type("sphere").key("radius").number(sphere->radius);
-        else if (const auto* box = std::get_if<Box>(&shape))
-            type("box").key("size").vector(to_double(box->half) * 2.0);
-        else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-            type("capsule")
-                .key("height")
-                .number(2.0 * double(capsule->half_length))
-                .key("radiusTop")
-                .number(capsule->radius)
-                .key("radiusBottom")
-                .number(capsule->radius);
-        } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-            type("cylinder")
-                .key("height")
-                .number(2.0 * double(cylinder->half_height))
-                .key("radiusTop")
-                .number(cylinder->radius)
-                .key("radiusBottom")
-                .number(cylinder->radius);
-        } else {
-            type("plane");
-        }
+        std::visit(ShapeFields{out}, shape);
         out.close('}').close('}');
     }
 
@@ -187,8 +190,10 @@ private:
                 case CombineMode::Minimum: return "minimum";
                 case CombineMode::Maximum: return "maximum";
                 case CombineMode::Multiply: return "multiply";
-                default: return "average";  // KHR has no geometric mean
+                case CombineMode::Average: break;
+                case CombineMode::GeometricMean: break;  // not in KHR: written in the extras
             }
+            return "average";
         };
         out.open('{')
             .key("staticFriction")
@@ -201,12 +206,12 @@ private:
             .text(mode(friction_combine))
             .key("restitutionCombine")
             .text(mode(restitution_combine));
-        const bool own = friction_combine == CombineMode::GeometricMean,
-                   own_bounce = restitution_combine == CombineMode::GeometricMean;
-        if (own || own_bounce) {
+        const bool friction_in_extras = friction_combine == CombineMode::GeometricMean,
+                   restitution_in_extras = restitution_combine == CombineMode::GeometricMean;
+        if (friction_in_extras || restitution_in_extras) {
             out.key("extras").open('{').key("fase").open('{');
-            if (own) out.key("frictionCombine").text("geometricMean");
-            if (own_bounce) out.key("restitutionCombine").text("geometricMean");
+            if (friction_in_extras) out.key("frictionCombine").text("geometricMean");
+            if (restitution_in_extras) out.key("restitutionCombine").text("geometricMean");
             out.close('}').close('}');
         }
         out.close('}');
@@ -350,14 +355,14 @@ Result<std::string> gltf_bytes(const Scene& scene, GltfForm form) {
         if (auto checked = check_indices(scene); !checked) return checked.error();
         return Writer(scene).run(form);
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "scene", "found too little memory to write it", {}};
+        return Error{Status::NoMemory, "scene", "found too little memory to write the scene", {}};
     }
 }
 
 Result<void> write_gltf(const Scene& scene, const std::string& path) {
     const bool binary = path.ends_with(".glb");
     if (!binary && !path.ends_with(".gltf"))
-        return Error{Status::BadArgument, path, "found another ending, need .glb or .gltf", {}};
+        return Error{Status::BadArgument, path, "found another extension; expected .glb or .gltf", {}};
     const Result<std::string> bytes = gltf_bytes(scene, binary ? GltfForm::Binary : GltfForm::Text);
     if (!bytes) {
         Error error = bytes.error();

@@ -9,19 +9,20 @@ namespace fase::scene {
 
 /// The two forms of glTF.
 enum class GltfForm {
-    Text,    ///< .gltf: JSON, data inside as base64
+    Text,    ///< .gltf: JSON with embedded base64 data
     Binary,  ///< .glb
 };
 
-/// The scene as a whole file. read_gltf() gives it back: bodies, colliders, shapes, visuals, scenery, camera, settings,
-/// gravity. What the extensions have no place for (damping, locks, sleep, density, groups, user numbers, the geometric
-/// mean) stands in `extras.fase`, so that other readers pass over it. Other programs see the mass that Fase reckons
-/// from densities. Not written: joints (they are not simulated yet) and warnings. Equal scenes give equal bytes.
-/// Errors: OutOfRange for an index inside the scene that leads nowhere, BadArgument for a number that is not finite.
+/// Returns the scene as a complete file. read_gltf() restores bodies, colliders, shapes, visuals, scenery, camera,
+/// settings and gravity. Properties without a place in the extensions (damping, locks, sleep, density, groups, user
+/// numbers, the geometric mean) are stored in `extras.fase`, which other readers ignore. Masses that Fase computes from
+/// densities are written for other programs. Not written: joints (they are not simulated yet) and warnings. Equal
+/// scenes give equal bytes. Errors: OutOfRange for an invalid index in the scene, BadArgument for a number that is not
+/// finite.
 Result<std::string> gltf_bytes(const Scene& scene, GltfForm form);
 
-/// Writes it under `path`, in the form its ending asks for (".glb", ".gltf"; BadArgument for others), whole or not at
-/// all: see write_file().
+/// Writes the scene to `path`. The extension selects the form (".glb", ".gltf"; BadArgument for others). Writes the
+/// complete file or nothing: see write_file().
 Result<void> write_gltf(const Scene& scene, const std::string& path);
 
 }  // namespace fase::scene

@@ -1,4 +1,4 @@
-/// Lines of words into corners and triangles.
+/// Parses OBJ lines into vertices and triangles.
 #include "fase/scene/obj.hpp"
 
 #include <fmt/format.h>
@@ -18,85 +18,91 @@ constexpr std::size_t max_bytes = std::size_t{1} << 30;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Gives out one word after the other; a `\` before a line's end is a blank.
+/// Splits a text into words and lines; a `\` before a line's end counts as a blank.
 class Words {
 public:
     explicit Words(std::string_view text) : text_(text) {}
 
-    /// The next word of the line; empty at its end.
+    /// Returns the next word of the line; empty at its end.
     std::string_view next() {
-        while (at_ < text_.size() && (is_blank(text_[at_]) || continues())) {
-            if (text_[at_] == '\\') {
-                at_ = text_.find('\n', at_);
+        while (position_ < text_.size() && (is_blank(text_[position_]) || continues())) {
+            if (text_[position_] == '\\') {
+                position_ = text_.find('\n', position_);
                 ++line_;
             }
-            ++at_;
+            ++position_;
         }
-        const std::size_t first = at_;
-        while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) && !continues()) ++at_;
-        return text_.substr(first, at_ - first);
+        const std::size_t first = position_;
+        while (position_ < text_.size() && text_[position_] != '\n' && !is_blank(text_[position_]) && !continues())
+            ++position_;
+        return text_.substr(first, position_ - first);
     }
-    /// To the next line; false when there is none.
+    /// Advances to the next line; false if there is none.
     bool next_line() {
         while (!next().empty()) {
         }
-        if (at_ >= text_.size()) return false;
-        ++at_;
+        if (position_ >= text_.size()) return false;
+        ++position_;
         ++line_;
-        return at_ < text_.size();
+        return position_ < text_.size();
     }
     [[nodiscard]] std::size_t line() const { return line_; }
 
 private:
     std::string_view text_;
-    std::size_t at_ = 0, line_ = 1;
+    std::size_t position_ = 0, line_ = 1;
 
     [[nodiscard]] bool continues() const {
-        if (text_[at_] != '\\') return false;
-        const std::size_t behind = at_ + 1 < text_.size() && text_[at_ + 1] == '\r' ? at_ + 2 : at_ + 1;
-        return behind < text_.size() && text_[behind] == '\n';
+        if (text_[position_] != '\\') return false;
+        const std::size_t after =
+            position_ + 1 < text_.size() && text_[position_ + 1] == '\r' ? position_ + 2 : position_ + 1;
+        return after < text_.size() && text_[after] == '\n';
     }
 };
 
-template <class Number> bool whole(std::string_view word, Number& number) {
+/// Parses the complete word.
+template <class Number> bool parse_number(std::string_view word, Number& number) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), number);
     return problem == std::errc{} && end == word.data() + word.size();
 }
 
-/// A corner of a face, laid flat.
-struct Flat {
+/// A corner of a face, projected to a coordinate plane.
+struct PlanePoint {
     double x = 0, y = 0;
 };
-double turn(Flat a, Flat b, Flat c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+/// Twice the signed area of a triangle; above 0: counter-clockwise.
+double signed_area(PlanePoint a, PlanePoint b, PlanePoint c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
-/// Faces of more corners than this become fans: finding ears costs the square.
-constexpr std::size_t max_ears = 512;
+/// Faces with more corners become fans: ear clipping is quadratic or worse.
+constexpr std::size_t max_clipped_corners = 512;
 
-/// Cuts a face into triangles, ear by ear; what has no ear left (it crosses itself) becomes a fan. The corners are used
-/// up. Source: Meisters 1975, Polygons have ears.
+/// Triangulates a face by ear clipping; a rest without an ear (the face intersects itself) becomes a fan. Modifies
+/// `face`. Source: Meisters 1975, Polygons have ears.
 void add_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& face) {
     Vec3d normal{};
     const auto corner = [&](std::size_t i) { return to_double(mesh.positions[face[i % face.size()]]); };
     for (std::size_t i = 0; i < face.size(); ++i) normal += cross(corner(i) - corner(0), corner(i + 1) - corner(0));
     const Vec3d size = abs(normal);
     const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
-    const bool turned = normal[axis] < 0;
-    const auto flat = [&](std::size_t i) {
+    const bool flipped = normal[axis] < 0;
+    const auto projected = [&](std::size_t i) {
         const Vec3d p = corner(i);
-        const Flat f{p[(axis + 1) % 3], p[(axis + 2) % 3]};
-        return turned ? Flat{f.y, f.x} : f;
+        const PlanePoint f{p[(axis + 1) % 3], p[(axis + 2) % 3]};
+        return flipped ? PlanePoint{f.y, f.x} : f;
     };
     const auto is_ear = [&](std::size_t i) {
-        const Flat a = flat(i), b = flat(i + 1), c = flat(i + 2);
-        if (!(turn(a, b, c) > 0)) return false;
+        const PlanePoint a = projected(i), b = projected(i + 1), c = projected(i + 2);
+        if (!(signed_area(a, b, c) > 0)) return false;
         for (std::size_t k = i + 3; k < i + face.size(); ++k) {
-            const Flat p = flat(k);
-            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+            const PlanePoint p = projected(k);
+            if (signed_area(a, b, p) >= 0 && signed_area(b, c, p) >= 0 && signed_area(c, a, p) >= 0) return false;
         }
         return true;
     };
-    while (face.size() > 3 && face.size() <= max_ears) {
+    while (face.size() > 3 && face.size() <= max_clipped_corners) {
         std::size_t ear = 0;
         while (ear < face.size() && !is_ear(ear)) ++ear;
         if (ear == face.size()) break;
@@ -123,8 +129,8 @@ Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byt
         for (int axis = 0; axis < 3; ++axis) {
             const std::string_view word = words.next();
             double number = 0;
-            if (!whole(word, number) || !std::isfinite(static_cast<float>(number)))
-                return fail(fmt::format("found {} as a coordinate, need a number that a float can hold",
+            if (!parse_number(word, number) || !std::isfinite(static_cast<float>(number)))
+                return fail(fmt::format("found {} as a coordinate; expected a number in the range of float",
                                         word.empty() ? "nothing" : quoted_short(word)));
             corner[axis] = static_cast<float>(number);
         }
@@ -136,23 +142,24 @@ Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byt
         for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
             std::int64_t number = 0;
             const auto corners = static_cast<std::int64_t>(mesh.positions.size());
-            if (!whole(word.substr(0, word.find('/')), number))
-                return fail(fmt::format("found {} as a corner of a face, need its number", quoted_short(word)));
+            if (!parse_number(word.substr(0, word.find('/')), number))
+                return fail(
+                    fmt::format("found {} as a corner of a face; expected a vertex number", quoted_short(word)));
             const std::int64_t index = number > 0 ? number - 1 : corners + number;
             if (number == 0 || index < 0 || index >= corners)
-                return fail(fmt::format("found corner {}, need one of the {} before this line", number, corners));
+                return fail(fmt::format("found corner {}; expected one of the {} before this line", number, corners));
             face.push_back(static_cast<std::uint32_t>(index));
         }
-        if (face.size() < 3) return fail(fmt::format("found a face of {} corners, need at least 3", face.size()));
+        if (face.size() < 3) return fail(fmt::format("found a face of {} corners; expected at least 3", face.size()));
         add_triangles(mesh, face);
     };
     if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos)
-        return Error{Status::Format, fmt::format("{}:{}", name, nul), "found a byte 0, need text", {}};
+        return Error{Status::Format, fmt::format("{}:{}", name, nul), "found a NUL byte; expected text", {}};
     if (text.empty()) return mesh;
     do {
-        const std::string_view what = words.next();
-        if (what == "v") read_corner();
-        if (what == "f") read_face();
+        const std::string_view keyword = words.next();
+        if (keyword == "v") read_corner();
+        if (keyword == "f") read_face();
         if (error) return *std::move(error);
     } while (words.next_line());
     return mesh;

@@ -9,16 +9,15 @@
 
 namespace fase::scene {
 
-/// The corners (`v`) and faces (`f`) of a text; faces of more corners are cut into triangles by
-/// ears, concave ones too; those of more than 512, and those that cross themselves, become fans. Objects, groups,
-/// normals, materials, lines and curves are passed over. Counting from the end with negative numbers, and lines that go
-/// on behind a `\`, are understood. `name` is the file, for errors: Format with "name:line" for numbers that are none
-/// or not finite as floats, a corner that does not exist (yet), a face of fewer than three, NUL bytes. A text without
-/// faces is an empty mesh. Memory: at most 8 times the text. Source of the format: Wavefront 1995, Advanced Visualizer,
-/// appendix B1.
+/// Reads the vertices (`v`) and faces (`f`) of an OBJ text. Triangulates faces by ear clipping, also concave ones;
+/// faces of more than 512 corners, and self-intersecting ones, become fans. Ignores objects, groups, normals,
+/// materials, lines and curves. Supports negative indices (counted from the end) and lines continued with a `\`. `name`
+/// is the file name in errors: Format with "name:line" for invalid numbers or numbers that are not finite as floats, a
+/// vertex that is not defined (yet), a face of fewer than three corners, NUL bytes. A text without faces gives an empty
+/// mesh. Memory: at most 8 times the text. Source of the format: Wavefront 1995, Advanced Visualizer, appendix B1.
 Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byte> bytes);
 
-/// Reads and parses a regular file of at most 1 GiB; errors of read_file() and parse_obj().
+/// Reads and parses a regular file of at most 1 GiB. Errors of read_file() and parse_obj().
 Result<TriangleMesh> read_obj(const std::string& path);
 
 }  // namespace fase::scene

@@ -19,7 +19,7 @@ Error in_body(const Scene& scene, std::size_t index, const Error& cause) {
 Error bad_index(std::string where, std::size_t found, std::size_t size) {
     return {Status::OutOfRange,
             std::move(where),
-            "found index " + std::to_string(found) + ", need one below " + std::to_string(size),
+            "found index " + std::to_string(found) + "; expected one below " + std::to_string(size),
             {}};
 }
 
@@ -30,11 +30,11 @@ Result<void> add(const Scene& scene, World& world, std::vector<BodyId>& ids) {
             if (collider.shape < scene.shapes.size()) continue;
             return in_body(scene, i, bad_index("collider.shape", collider.shape, scene.shapes.size()));
         }
-        // The first collider comes with the body: one that is added later would wake it.
-        const bool bare = body.colliders.empty();
+        // Adds the first collider together with the body: adding it later would wake the body.
+        const bool no_collider = body.colliders.empty();
         Result<BodyId> id =
-            bare ? world.add_body(body.def)
-                 : world.add_body(body.def, scene.shapes[body.colliders[0].shape], body.colliders[0].def);
+            no_collider ? world.add_body(body.def)
+                        : world.add_body(body.def, scene.shapes[body.colliders[0].shape], body.colliders[0].def);
         if (!id) return in_body(scene, i, id.error());
         for (std::size_t k = 1; k < body.colliders.size(); ++k) {
             const Collider& collider = body.colliders[k];

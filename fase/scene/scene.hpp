@@ -1,5 +1,5 @@
 #pragma once
-/// A scene as plain data: what files hold, generators make and a world is filled from.
+/// A scene as plain data: files store it, generators create it, and worlds are filled from it.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,19 +19,19 @@ struct Colour {
     friend constexpr bool operator==(Colour, Colour) = default;
 };
 
-/// Triangles for the picture; nothing collides with them.
+/// Triangles that are drawn; they take no part in collision.
 struct Mesh {
     std::string name;
     std::vector<Vec3> positions;         ///< metres, in the mesh's own frame
-    std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise seen from outside
+    std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise seen from outside
     friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
-/// A mesh in its place: a point p of the mesh is drawn at linear * p + position.
+/// A placed mesh: a point p of the mesh is drawn at linear * p + position.
 struct Visual {
     std::uint32_t mesh = 0;          ///< index in Scene::meshes
-    Vec3 position;                   ///< in the body's frame (the world's, when it belongs to no body)
-    Mat3 linear = Mat3::identity();  ///< rotation, scale and shear; a negative determinant turns the triangles over
+    Vec3 position;                   ///< in the body's frame; in world coordinates if it has no body
+    Mat3 linear = Mat3::identity();  ///< rotation, scale and shear; a negative determinant flips the triangles
     Colour colour;
     friend bool operator==(const Visual&, const Visual&) = default;
 };
@@ -43,7 +43,7 @@ struct Collider {
     std::string name;  ///< may be empty, need not be unique
 };
 
-/// One body with all that belongs to it.
+/// One body with its colliders and visuals.
 struct Body {
     std::string name;  ///< may be empty, need not be unique
     BodyDef def;
@@ -51,25 +51,25 @@ struct Body {
     std::vector<Visual> visuals;
 };
 
-/// A joint that a file names. Joints are not simulated yet; what is kept of them is which bodies they hold and whether
-/// those may touch.
+/// A joint from a file. Joints are not simulated yet; the scene stores which bodies they connect and whether these may
+/// collide.
 struct Joint {
     std::string name;
-    std::string type;                ///< as the file calls it: "hinge", "limits on 5 axes" …
+    std::string type;                ///< "fixed", "hinge", "ball", "slider" or "5 free axes" …
     std::optional<std::uint32_t> a;  ///< index in Scene::bodies; nullopt: the world
     std::optional<std::uint32_t> b;
-    bool collide = false;  ///< whether a and b may touch each other
+    bool collide = false;  ///< whether a and b may collide
     friend bool operator==(const Joint&, const Joint&) = default;
 };
 
-/// From where a scene is best seen first.
+/// The initial view of a scene.
 struct Camera {
     Vec3 eye, target;             ///< metres, world; up is +y
-    float vertical_angle = 0.8f;  ///< radians, from the lower to the upper edge of the picture
+    float vertical_angle = 0.8f;  ///< field of view, radians
     friend constexpr bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// Settings that a scene asks for; what it leaves open stays as the user has it.
+/// Settings that a scene requests; empty ones keep the user's value.
 struct SettingsHint {
     std::optional<float> time_step;  ///< seconds
     std::optional<int> sub_steps;
@@ -77,34 +77,34 @@ struct SettingsHint {
     friend constexpr bool operator==(const SettingsHint&, const SettingsHint&) = default;
 };
 
-/// A scene: what moves, how it looks, and what the file said that is not understood. Indices inside are into its own
-/// lists.
+/// A scene: its bodies, their appearance, and warnings about unsupported parts of the file. Indices refer to the
+/// scene's own lists.
 struct Scene {
     std::string name;
     Vec3 gravity{0, -9.81f, 0};  ///< m/s²
     std::vector<Body> bodies;
     std::vector<Shape> shapes;    ///< shared by colliders
     std::vector<Mesh> meshes;     ///< shared by visuals
-    std::vector<Visual> scenery;  ///< seen, but neither touched nor moved
+    std::vector<Visual> scenery;  ///< visuals without a body: drawn only
     std::vector<Joint> joints;
     std::optional<Camera> camera;
     SettingsHint settings;
-    std::vector<std::string> extensions_used;  ///< as the file lists them
+    std::vector<std::string> extensions_used;  ///< as listed in the file
     std::vector<std::string> extensions_required;
-    /// What was not understood or not done, each thing once with how often it came: "triangle-mesh colliders are not
-    /// simulated yet (3 times)".
+    /// Unsupported parts of the file, without duplicates and with a count: "triangle-mesh colliders are not simulated
+    /// yet (3 times)".
     std::vector<std::string> warnings;
 };
 
-/// `base` with the scene's gravity and what its hints ask for.
+/// Returns `base` with the scene's gravity and its requested settings.
 [[nodiscard]] Settings settings_for(const Scene& scene, const Settings& base = {});
 
-/// Adds all bodies of the scene, in their order, and returns their ids in that order. Pairs of bodies that a joint
-/// forbids to touch are excluded. The world's settings stay: make it with settings_for(). On an error (which names the
-/// body) the world is as it was.
+/// Adds all bodies of the scene in their order and returns their ids in that order. Excludes the pairs of bodies whose
+/// joint disables collision. Does not change the world's settings: create the world with settings_for(). On an error,
+/// which names the body, the world is unchanged.
 Result<std::vector<BodyId>> instantiate(const Scene& scene, World& world);
 
-/// How many bodies of the scene are dynamic.
+/// Number of dynamic bodies in the scene.
 [[nodiscard]] std::size_t dynamic_bodies(const Scene& scene);
 
 }  // namespace fase::scene

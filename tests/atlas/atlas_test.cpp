@@ -1,4 +1,4 @@
-/// Sprites to pages and JSON: every pixel arrives where the frame says.
+/// Tests atlases: every pixel of a sprite is where its frame says, and the JSON has the published format.
 #include "fase/atlas/atlas.hpp"
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@
 namespace fase::atlas {
 namespace {
 
-Image flat(int width, int height, std::uint8_t shade, std::uint8_t alpha = 255) {
+Image uniform(int width, int height, std::uint8_t shade, std::uint8_t alpha = 255) {
     Image image(Size{width, height});
     for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 4 == 3 ? alpha : shade;
     return image;
 }
-/// Each pixel its own colour.
+/// Returns an image whose pixels all have different colours.
 Image speckled(int width, int height, std::uint8_t seed) {
     Image image(Size{width, height});
     for (int y = 0; y < height; ++y)
@@ -33,8 +33,8 @@ Image speckled(int width, int height, std::uint8_t seed) {
         }
     return image;
 }
-/// The sprite as a reader of the frame would draw it: untrimmed, unturned.
-Image drawn(const Atlas& atlas, const Frame& frame) {
+/// Draws a sprite as a reader of the frame would: untrimmed and unrotated.
+Image restored(const Atlas& atlas, const Frame& frame) {
     Image image(frame.source_size);
     for (int y = 0; y < frame.part.height; ++y)
         for (int x = 0; x < frame.part.width; ++x) {
@@ -49,7 +49,7 @@ std::string text_of(const NamedBytes& file) {
     return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
 }
 
-RC_GTEST_PROP(Atlas, DrawsEachSpriteAsItWas, ()) {
+RC_GTEST_PROP(Atlas, FramesRestoreEverySpriteExactly, ()) {
     std::vector<Sprite> sprites;
     for (int n = *rc::gen::inRange(0, 25); n > 0; --n) {
         Image image(Size{*rc::gen::inRange(1, 20), *rc::gen::inRange(1, 20)});
@@ -72,21 +72,21 @@ RC_GTEST_PROP(Atlas, DrawsEachSpriteAsItWas, ()) {
     RC_ASSERT(atlas->frames.size() == sprites.size());
     for (std::size_t i = 0; i < sprites.size(); ++i) {
         RC_ASSERT(atlas->frames[i].name == sprites[i].name);
-        RC_ASSERT(drawn(*atlas, atlas->frames[i]) == sprites[i].image);
+        RC_ASSERT(restored(*atlas, atlas->frames[i]) == sprites[i].image);
     }
 }
 
-TEST(Atlas, SharesThePlaceOfEqualPictures) {
+TEST(Atlas, EqualSpritesShareOnePlace) {
     Image framed(Size{9, 9});
-    paste(framed, flat(4, 6, 80), 2, 1, false, 0);
+    paste(framed, uniform(4, 6, 80), 2, 1, false, 0);
     const std::vector<Sprite> sprites{
-        {"a", flat(4, 6, 80)}, {"b", flat(4, 6, 80)}, {"c", framed}, {"d", flat(6, 4, 80)}};
+        {"a", uniform(4, 6, 80)}, {"b", uniform(4, 6, 80)}, {"c", framed}, {"d", uniform(6, 4, 80)}};
     AtlasOptions options;
     EXPECT_EQ(make_atlas(sprites, options)->different, 3u);
     options.trim = true;
     const Result<Atlas> trimmed = make_atlas(sprites, options);
     ASSERT_TRUE(trimmed);
-    EXPECT_EQ(trimmed->different, 2u) << "trimmed, the third is like the first";
+    EXPECT_EQ(trimmed->different, 2u) << "trimmed, the third equals the first";
     EXPECT_EQ(trimmed->frames[2].part, trimmed->frames[0].part);
     EXPECT_TRUE(trimmed->frames[2].trimmed);
     EXPECT_FALSE(trimmed->frames[0].trimmed);
@@ -113,27 +113,27 @@ TEST(Atlas, RepeatsEdgesAroundSprites) {
 TEST(Atlas, RefusesNamesThatLeaveTheFolder) {
     for (const char* bad : {"", "../a.png", "a/../../b.png", "/etc/a.png", "C:/a.png", "a\\b.png", "a//b.png",
                             "./a.png", "a/", "..", "a\nb.png", "\x80.png", "\xc0\xaf.png", "\xed\xa0\x80"}) {
-        const Result<Atlas> atlas = make_atlas(std::vector<Sprite>{{bad, flat(1, 1, 0)}});
+        const Result<Atlas> atlas = make_atlas(std::vector<Sprite>{{bad, uniform(1, 1, 0)}});
         ASSERT_FALSE(atlas) << bad;
         EXPECT_EQ(atlas.status(), Status::BadArgument);
     }
     for (const char* good : {"a.png", "a/b c.png", "...png", "\xc3\xa4/\xf0\x9f\x98\x80.png", "a..b"})
         EXPECT_EQ(problem_of_name(good), "") << good;
-    EXPECT_EQ(make_atlas(std::vector<Sprite>{{"a", flat(1, 1, 0)}, {"a", flat(2, 1, 0)}}).status(),
+    EXPECT_EQ(make_atlas(std::vector<Sprite>{{"a", uniform(1, 1, 0)}, {"a", uniform(2, 1, 0)}}).status(),
               Status::BadArgument);
 }
 
-TEST(Atlas, NamesTheSpriteThatIsLargerThanAPage) {
+TEST(Atlas, ErrorNamesTheSpriteThatIsLargerThanAPage) {
     AtlasOptions options;
     options.pack.max_side = 16;
     const Result<Atlas> atlas =
-        make_atlas(std::vector<Sprite>{{"small", flat(8, 8, 0)}, {"wide", flat(17, 2, 0)}}, options);
+        make_atlas(std::vector<Sprite>{{"small", uniform(8, 8, 0)}, {"wide", uniform(17, 2, 0)}}, options);
     ASSERT_FALSE(atlas);
     EXPECT_EQ(atlas.error().where, "wide");
     EXPECT_NE(atlas.error().problem.find("17 x 2"), std::string::npos) << atlas.error().text();
 }
 
-TEST(Atlas, WritesTheJsonThatReadersKnow) {
+TEST(Atlas, WritesThePublishedJsonFormat) {
     const std::vector<Sprite> sprites{{"quote\".png", speckled(10, 20, 1)}, {"b/c.png", speckled(30, 8, 2)}};
     for (const bool array : {false, true}) {
         AtlasOptions options;
@@ -171,11 +171,11 @@ TEST(Atlas, WritesTheJsonThatReadersKnow) {
     }
 }
 
-TEST(Atlas, PagesNameEachOther) {
+TEST(Atlas, EachPageNamesTheOthers) {
     AtlasOptions options;
     options.pack.max_side = 16;
     std::vector<Sprite> sprites;
-    for (int i = 0; i < 3; ++i) sprites.push_back({std::to_string(i), flat(16, 16, static_cast<std::uint8_t>(i))});
+    for (int i = 0; i < 3; ++i) sprites.push_back({std::to_string(i), uniform(16, 16, static_cast<std::uint8_t>(i))});
     const Result<Atlas> atlas = make_atlas(sprites, options);
     ASSERT_TRUE(atlas);
     ASSERT_EQ(atlas->pages.size(), 3u);
@@ -192,15 +192,16 @@ TEST(Atlas, WritesAllFilesOrNone) {
     const fs::path folder =
         fs::temp_directory_path() / ("fase_atlas_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
                                      "_" + std::to_string(reinterpret_cast<std::uintptr_t>(&folder)));
-    fs::create_directories(folder / "in_the_way");
-    const std::string first = folder / "first", blocked = folder / "in_the_way";
+    fs::create_directories(folder / "blocked");
+    const std::string first = folder / "first", blocked = folder / "blocked";
     std::ofstream(first) << "old";
     const std::vector<NamedBytes> files{{first, std::vector<std::byte>(3)}, {blocked, std::vector<std::byte>(3)}};
     EXPECT_EQ(write_files(files).status(), Status::Io);
-    std::string word;
-    std::ifstream(first) >> word;
-    EXPECT_EQ(word, "old");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2) << "nothing else is left";
+    std::string content;
+    std::ifstream(first) >> content;
+    EXPECT_EQ(content, "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2)
+        << "no temporary file is left";
     EXPECT_TRUE(write_files(std::span(files).first(1)));
     EXPECT_EQ(fs::file_size(first), 3u);
     fs::remove_all(folder);

@@ -1,4 +1,4 @@
-/// Properties of packings, and how full pages of published sizes get.
+/// Tests properties of packings, and the occupancy for published sets of sizes.
 #include "fase/atlas/packer.hpp"
 
 #include <gtest/gtest.h>
@@ -32,16 +32,16 @@ PackOptions any_options() {
     options.tries = *rc::gen::inRange(1, 60);
     return options;
 }
-std::vector<Size> random_sizes(std::size_t count, int most, std::uint64_t seed) {
+std::vector<Size> random_sizes(std::size_t count, int max_side, std::uint64_t seed) {
     Random random(seed);
     std::vector<Size> sizes;
     for (std::size_t i = 0; i < count; ++i)
-        sizes.push_back({1 + static_cast<int>(random.below(static_cast<std::uint64_t>(most))),
-                         1 + static_cast<int>(random.below(static_cast<std::uint64_t>(most)))});
+        sizes.push_back({1 + static_cast<int>(random.below(static_cast<std::uint64_t>(max_side))),
+                         1 + static_cast<int>(random.below(static_cast<std::uint64_t>(max_side)))});
     return sizes;
 }
 
-RC_GTEST_PROP(Packer, LaysEachDownOnceInsideAPageApartFromOthers, ()) {
+RC_GTEST_PROP(Packer, PlacesEveryRectangleInsideAPageWithoutOverlap, ()) {
     const std::vector<Size> sizes = any_sizes(56);
     const PackOptions options = any_options();
     const Result<Packing> packing = pack(sizes, options);
@@ -49,7 +49,7 @@ RC_GTEST_PROP(Packer, LaysEachDownOnceInsideAPageApartFromOthers, ()) {
     RC_ASSERT(problem_of(*packing, sizes, options) == "");
 }
 
-RC_GTEST_PROP(Packer, GivesTheSameForTheSameTries, ()) {
+RC_GTEST_PROP(Packer, SameTriesGiveTheSamePacking, ()) {
     const std::vector<Size> sizes = any_sizes(56);
     const PackOptions options = any_options();
     const Result<Packing> a = pack(sizes, options), b = pack(sizes, options);
@@ -59,7 +59,7 @@ RC_GTEST_PROP(Packer, GivesTheSameForTheSameTries, ()) {
     RC_ASSERT(a->rule == b->rule);
 }
 
-RC_GTEST_PROP(Packer, AddsWithoutMovingWhatIsThere, ()) {
+RC_GTEST_PROP(Packer, AddKeepsPackedRectanglesInPlace, ()) {
     std::vector<Size> sizes = any_sizes(40);
     const std::vector<Size> more = any_sizes(40);
     const PackOptions options = any_options();
@@ -86,7 +86,7 @@ TEST(Packer, MoreTriesAreNeverWorse) {
     }
 }
 
-TEST(Packer, FillsAPageThatCanBeFilled) {
+TEST(Packer, EqualSquaresFillThePage) {
     for (const Method method : {Method::Best, Method::KdTree, Method::Skyline}) {
         PackOptions options;
         options.method = method;
@@ -118,7 +118,7 @@ TEST(Packer, ExtrudedEdgesAreInsideThePage) {
     EXPECT_EQ(packing->places[0], (Place{0, 2, 2, false}));
 }
 
-TEST(Packer, SpreadsOverFullPagesAndASmallLastOne) {
+TEST(Packer, UsesFullPagesAndASmallLastOne) {
     PackOptions options;
     options.max_side = 100;
     const std::vector<Size> sizes(5, {50, 100});
@@ -132,7 +132,7 @@ TEST(Packer, SpreadsOverFullPagesAndASmallLastOne) {
     EXPECT_EQ(area_of(cropped->pages.back()), 5000);
 }
 
-TEST(Packer, TakesWhatIsAsLargeAsAPage) {
+TEST(Packer, PacksRectanglesAsLargeAsAPage) {
     PackOptions options;
     options.max_side = 64;
     for (const bool power : {false, true}) {
@@ -144,26 +144,26 @@ TEST(Packer, TakesWhatIsAsLargeAsAPage) {
     }
 }
 
-TEST(Packer, AddsIntoTheHolesOfAPageFirst) {
+TEST(Packer, AddUsesFreeSpaceOfPagesFirst) {
     PackOptions options;
     options.max_side = 64;
-    const std::vector<Size> there{{64, 40}, {40, 24}};
-    Result<Packing> packing = pack(there, options);
+    const std::vector<Size> packed{{64, 40}, {40, 24}};
+    Result<Packing> packing = pack(packed, options);
     ASSERT_TRUE(packing);
     ASSERT_EQ(packing->pages.size(), 1u);
     const std::vector<Size> more(9, {8, 8});
-    ASSERT_TRUE(add(*packing, there, more, options));
-    EXPECT_EQ(packing->pages.size(), 1u) << "24 x 24 pixels are free: they hold nine of 8 x 8";
+    ASSERT_TRUE(add(*packing, packed, more, options));
+    EXPECT_EQ(packing->pages.size(), 1u) << "24 x 24 pixels are free, enough for nine of 8 x 8";
 }
 
-TEST(Packer, NothingNeedsNoPage) {
+TEST(Packer, NoRectanglesNeedNoPage) {
     const Result<Packing> packing = pack({});
     ASSERT_TRUE(packing);
     EXPECT_TRUE(packing->pages.empty());
     EXPECT_EQ(packing->occupancy({}), 0);
 }
 
-TEST(Packer, RefusesWhatCannotBeMeant) {
+TEST(Packer, RejectsInvalidSizesAndOptions) {
     const auto status = [](std::vector<Size> sizes, PackOptions options) { return pack(sizes, options).status(); };
     for (const Size bad : {Size{0, 5}, Size{5, 0}, Size{-1, 5}, Size{4097, 1}, Size{1, 2000000000}}) {
         const Result<Packing> packing = pack(std::vector<Size>{{1, 1}, bad});
@@ -190,7 +190,7 @@ TEST(Packer, RefusesWhatCannotBeMeant) {
     EXPECT_EQ(add(empty, std::vector<Size>{{1, 1}}, {}, {}).status(), Status::BadArgument);
 }
 
-TEST(Packer, StandsOddShapes) {
+TEST(Packer, PacksExtremeSizes) {
     for (const std::vector<Size>& sizes :
          {std::vector<Size>(3000, {1, 1}), std::vector<Size>(40, {1, 2000}), std::vector<Size>{{65536, 1}, {1, 65536}},
           random_sizes(3, 60000, 1), random_sizes(20000, 3, 2)}) {
@@ -206,7 +206,7 @@ TEST(Packer, StandsOddShapes) {
     }
 }
 
-/// The sets of rectangles that the documentation's table shows.
+/// Uses the sets of rectangles from the table in docs/atlas.md.
 TEST(Packer, FillsPublishedSetsWithinFewTries) {
     const struct {
         const char* name;

@@ -1,4 +1,4 @@
-/// PNG files in and out: the published suite, broken files, and a way there and back.
+/// Tests PNG reading and writing: the published suite, broken files, and a round trip.
 #include "fase/atlas/png.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ std::uint32_t crc_of(std::span<const std::byte> bytes) {
 void put(std::vector<std::byte>& bytes, std::size_t at, std::uint32_t value) {
     for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::byte>(value >> (24 - 8 * i));
 }
-/// Gives a file's header another width and height, and the right checksum.
+/// Changes width and height in a file's header and updates its checksum.
 void set_size(std::vector<std::byte>& bytes, std::uint32_t width, std::uint32_t height) {
     put(bytes, 16, width);
     put(bytes, 20, height);
@@ -61,7 +61,7 @@ TEST(Png, ReadsTheWholeSuite) {
     for (const fs::path& path : files) {
         const Result<Image> image = read_png_file(path.string());
         ASSERT_TRUE(image) << image.error().text();
-        // The suite's names say the size where it is not 32 x 32: s01 to s40, and cd, whose pixels are not square.
+        // Most images are 32 x 32. The names s01 to s40 contain the size; those of cd have non-square pixels.
         const std::string name = path.filename().string();
         const int side = name[0] == 's' && name[1] != 't' ? std::stoi(name.substr(1, 2)) : 0;
         if (side != 0) {
@@ -70,7 +70,7 @@ TEST(Png, ReadsTheWholeSuite) {
     }
 }
 
-TEST(Png, ReadsAnInterlacedImageAsItsPlainTwin) {
+TEST(Png, InterlacedAndPlainVersionsAreEqual) {
     std::size_t twins = 0;
     for (const fs::path& path : files_of_suite(false)) {
         const std::string name = path.filename().string();
@@ -99,7 +99,7 @@ TEST(Png, ReadsTransparency) {
     }
 }
 
-TEST(Png, RefusesEachBrokenFileOfTheSuite) {
+TEST(Png, RejectsEveryBrokenFileOfTheSuite) {
     const std::vector<fs::path> files = files_of_suite(true);
     if (files.empty()) GTEST_SKIP() << "skipped: no " << suite;
     EXPECT_EQ(files.size(), 14u);
@@ -112,7 +112,7 @@ TEST(Png, RefusesEachBrokenFileOfTheSuite) {
     }
 }
 
-TEST(Png, RefusesAFileCutAnywhere) {
+TEST(Png, RejectsAFileTruncatedAtAnyByte) {
     std::vector<fs::path> files = files_of_suite(false);
     if (files.empty()) GTEST_SKIP() << "skipped: no " << suite;
     for (std::size_t f = 0; f < files.size(); f += 5) {
@@ -124,34 +124,35 @@ TEST(Png, RefusesAFileCutAnywhere) {
     }
 }
 
-TEST(Png, SurvivesAWrongBitAnywhere) {
+TEST(Png, RejectsAFlippedBitInAnyByte) {
     if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
     for (const char* name : {"basn3p08", "basi6a16", "tbbn3p08", "basn0g01"}) {
         const std::vector<std::byte> bytes = bytes_of(suite + "/" + name + ".png");
         for (std::size_t i = 0; i < bytes.size(); ++i) {
             std::vector<std::byte> wrong = bytes;
             wrong[i] ^= std::byte{static_cast<unsigned char>(1u << i % 8)};
-            ASSERT_FALSE(read_png(wrong, "wrong")) << name << ": each byte is under a checksum, byte " << i;
+            ASSERT_FALSE(read_png(wrong, "wrong"))
+                << name << ": byte " << i << ", although a checksum covers every byte";
         }
     }
 }
 
-TEST(Png, RefusesSizesThatCannotBe) {
+TEST(Png, RejectsImpossibleSizes) {
     const std::vector<std::byte> good = *write_png(Image(Size{3, 2}));
     ASSERT_TRUE(read_png(good, "good"));
-    for (const auto& [width, height, words] :
+    for (const auto& [width, height, text] :
          {std::tuple(0x7fffffffu, 0x7fffffffu, "image expands to"), std::tuple(0x80000000u, 1u, "broken"),
           std::tuple(0u, 5u, "broken"), std::tuple(8193u, 8192u, "image expands to"),
-          std::tuple(8192u, 8192u, "need at least"), std::tuple(4u, 2u, "broken"), std::tuple(3u, 3u, "broken")}) {
+          std::tuple(8192u, 8192u, "expected at least"), std::tuple(4u, 2u, "broken"), std::tuple(3u, 3u, "broken")}) {
         std::vector<std::byte> bytes = good;
         set_size(bytes, width, height);
         const Result<Image> image = read_png(bytes, "file.png");
         ASSERT_FALSE(image) << width << " x " << height;
-        EXPECT_NE(image.error().problem.find(words), std::string::npos) << image.error().text();
+        EXPECT_NE(image.error().problem.find(text), std::string::npos) << image.error().text();
     }
 }
 
-TEST(Png, RefusesAPaletteIndexWithoutAColour) {
+TEST(Png, RejectsAPaletteIndexWithoutAColour) {
     if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
     std::vector<std::byte> bytes = bytes_of(suite + "/basn3p08.png");
     const char word[] = "PLTE";
@@ -159,7 +160,7 @@ TEST(Png, RefusesAPaletteIndexWithoutAColour) {
                                 [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
     ASSERT_NE(at, bytes.end());
     const auto start = static_cast<std::size_t>(at - bytes.begin());
-    // All colours but two leave the palette.
+    // Remove all but two colours from the palette.
     const std::size_t old = 3 * 256;
     bytes.erase(at + 4 + 6, at + 4 + static_cast<std::ptrdiff_t>(old));
     put(bytes, start - 4, 6);
@@ -169,14 +170,14 @@ TEST(Png, RefusesAPaletteIndexWithoutAColour) {
     EXPECT_NE(image.error().problem.find("palette index"), std::string::npos) << image.error().text();
 }
 
-TEST(Png, RefusesWhatIsNoFile) {
+TEST(Png, RejectsInputThatIsNotAPngFile) {
     EXPECT_EQ(read_png_file("/nowhere/at/all.png").status(), Status::Io);
     EXPECT_EQ(read_png_file("/").status(), Status::Format);
     EXPECT_EQ(write_png(Image()).status(), Status::BadArgument);
     EXPECT_EQ(read_png({}, "empty").status(), Status::Format);
 }
 
-RC_GTEST_PROP(Png, ComesBackAsItWent, ()) {
+RC_GTEST_PROP(Png, RoundTripIsExact, ()) {
     const Image image = any_image(12);
     const Result<std::vector<std::byte>> bytes = write_png(image);
     RC_ASSERT(bytes.has_value());
@@ -185,7 +186,7 @@ RC_GTEST_PROP(Png, ComesBackAsItWent, ()) {
     RC_ASSERT(*back == image);
 }
 
-RC_GTEST_PROP(Image, VisiblePartHoldsAllThatShows, ()) {
+RC_GTEST_PROP(Image, VisiblePartIsTheSmallestAreaWithAllVisiblePixels, ()) {
     Image image(Size{*rc::gen::inRange(1, 12), *rc::gen::inRange(1, 12)});
     for (int n = *rc::gen::inRange(0, 4); n > 0; --n)
         image.at(*rc::gen::inRange(0, image.size.width), *rc::gen::inRange(0, image.size.height))[3] = 9;

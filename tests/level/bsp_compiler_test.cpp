@@ -1,4 +1,4 @@
-/// Trees of maps drawn by hand, by chance and by level designers.
+/// Compiles maps drawn by hand, random maps, and maps of level designers.
 #include "fase/level/bsp_compiler.hpp"
 
 #include <gtest/gtest.h>
@@ -22,10 +22,10 @@ LevelBsp compiled(const Map& map, const CompileOptions& options = {}) {
     return bsp ? *std::move(bsp) : LevelBsp{};
 }
 
-/// What holds for every map, sense or nonsense.
+/// Checks the properties of every tree, also of malformed maps.
 void expect_sound(const Map& map, const LevelBsp& bsp, const std::string& what) {
     ASSERT_FALSE(bsp.sub_sectors.empty()) << what;
-    // Every seg is in exactly one sub-sector: they follow each other without a gap.
+    // Every seg is in exactly one sub-sector: the ranges are contiguous.
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < bsp.sub_sectors.size(); ++i) {
         const SubSector& s = bsp.sub_sectors[i];
@@ -36,7 +36,7 @@ void expect_sound(const Map& map, const LevelBsp& bsp, const std::string& what) 
         for (std::uint32_t k = s.first; k < next; ++k) EXPECT_EQ(bsp.segs[k].sub_sector, i) << what;
     }
     EXPECT_EQ(next, bsp.segs.size()) << what;
-    // Children come before their parents, and each is somebody's child once.
+    // Children are before their parents, and each is a child exactly once.
     std::vector<int> nodes(bsp.nodes.size()), leaves(bsp.sub_sectors.size());
     for (std::size_t n = 0; n < bsp.nodes.size(); ++n) {
         for (const std::uint32_t child : bsp.nodes[n].children) {
@@ -62,7 +62,7 @@ void expect_sound(const Map& map, const LevelBsp& bsp, const std::string& what) 
     EXPECT_EQ(check.wrong_partners, 0u) << what;
 }
 
-/// What holds besides for a map that makes sense.
+/// Checks the properties of trees of well-formed maps.
 void expect_right(const Map& map, const LevelBsp& bsp, const std::string& what) {
     expect_sound(map, bsp, what);
     const BspCheck check = check_bsp(map, bsp);
@@ -72,7 +72,7 @@ void expect_right(const Map& map, const LevelBsp& bsp, const std::string& what) 
     for (const SubSector& s : bsp.sub_sectors) EXPECT_EQ(s.outliers, 0u) << what;
 }
 
-/// The sector around a point by its winding number; none when no sector goes around it.
+/// Returns the sector around a point by its winding number; nullopt if there is none.
 std::optional<std::uint32_t> sector_by_winding(const Map& map, Point p) {
     std::vector<int> turns(map.sectors.size());
     for (const Line& line : map.lines) {
@@ -100,7 +100,7 @@ double distance_to_lines(const Map& map, Point p) {
     return least;
 }
 
-/// The sub-sector at a point by the tree.
+/// Returns the sub-sector at a point by the tree.
 const SubSector& sub_sector_at(const LevelBsp& bsp, Point p) {
     std::uint32_t child = bsp.root();
     while ((child & Node::leaf_bit) == 0) child = bsp.nodes[child].children[side_of(bsp.nodes[child], p)];
@@ -114,7 +114,7 @@ bool is_inside(const LevelBsp& bsp, const SubSector& s, Point p) {
     return true;
 }
 
-void expect_right_places(const Map& map, const LevelBsp& bsp, int count, std::uint64_t seed) {
+void expect_right_sectors(const Map& map, const LevelBsp& bsp, int count, std::uint64_t seed) {
     PlanBox plan;
     for (const Line& line : map.lines) plan.add(bsp.vertices[line.from]);
     Random random(seed);
@@ -124,10 +124,10 @@ void expect_right_places(const Map& map, const LevelBsp& bsp, int count, std::ui
         const Point p{between(plan.lo.x, plan.hi.x), between(plan.lo.y, plan.hi.y)};
         if (distance_to_lines(map, p) < 1e-3) continue;
         const SubSector& s = sub_sector_at(bsp, p);
-        const auto wanted = sector_by_winding(map, p);
-        if (wanted) {
+        const auto expected = sector_by_winding(map, p);
+        if (expected) {
             EXPECT_TRUE(is_inside(bsp, s, p)) << p.x << ", " << p.y;
-            EXPECT_EQ(s.sector, *wanted) << p.x << ", " << p.y;
+            EXPECT_EQ(s.sector, *expected) << p.x << ", " << p.y;
             ++found;
         } else {
             EXPECT_FALSE(is_inside(bsp, s, p)) << p.x << ", " << p.y;
@@ -136,7 +136,7 @@ void expect_right_places(const Map& map, const LevelBsp& bsp, int count, std::ui
     EXPECT_GT(found, count / 20);
 }
 
-TEST(BspCompiler, LeavesAConvexRoomWhole) {
+TEST(BspCompiler, KeepsAConvexRoomInOnePiece) {
     const Map map = room_map();
     const LevelBsp bsp = compiled(map);
     expect_right(map, bsp, "room");
@@ -146,10 +146,10 @@ TEST(BspCompiler, LeavesAConvexRoomWhole) {
     EXPECT_EQ(bsp.stats.wall_segs, 4u);
     EXPECT_EQ(bsp.stats.splits, 0u);
     EXPECT_EQ(bsp.stats.mean_depth, 0);
-    for (const Seg& seg : bsp.segs) EXPECT_EQ(seg.partner, no_seg);
+    for (const Seg& seg : bsp.segs) EXPECT_EQ(seg.partner, no_index);
 }
 
-TEST(BspCompiler, CutsACornerOnceAndJoinsTheHalves) {
+TEST(BspCompiler, SplitsACornerOnceAndLinksTheHalves) {
     DrawnMap drawn;
     drawn.loop({{0, 0}, {0, 256}, {128, 256}, {128, 128}, {256, 128}, {256, 0}}, drawn.sector());
     const LevelBsp bsp = compiled(drawn.map);
@@ -159,45 +159,45 @@ TEST(BspCompiler, CutsACornerOnceAndJoinsTheHalves) {
     EXPECT_EQ(bsp.stats.splits, 1u);
     EXPECT_EQ(bsp.stats.minisegs, 2u);
     for (const Seg& seg : bsp.segs) {
-        if (seg.line != no_line) continue;
-        ASSERT_NE(seg.partner, no_seg);
+        if (seg.line != no_index) continue;
+        ASSERT_NE(seg.partner, no_index);
         EXPECT_NE(bsp.segs[seg.partner].sub_sector, seg.sub_sector);
     }
 }
 
-TEST(BspCompiler, TellsHowFarAlongItsLineASegBegins) {
+TEST(BspCompiler, StoresTheOffsetOfSegsOnTheirLine) {
     DrawnMap drawn;
     drawn.loop({{0, 0}, {0, 256}, {128, 256}, {128, 128}, {256, 128}, {256, 0}}, drawn.sector());
     const LevelBsp bsp = compiled(drawn.map);
     for (const Seg& seg : bsp.segs) {
-        if (seg.line == no_line) continue;
+        if (seg.line == no_index) continue;
         const Vertex begin = drawn.map.vertices[drawn.map.lines[seg.line].from];
         const Point from = bsp.vertices[seg.from];
         EXPECT_EQ(seg.offset, std::abs(from.x - begin.x) + std::abs(from.y - begin.y));
     }
 }
 
-TEST(BspCompiler, GoesAroundPillarsAndIntoPools) {
+TEST(BspCompiler, HandlesPillarsAndPools) {
     const Map map = pool_map();
     for (const Effort effort : efforts) {
         CompileOptions options;
         options.effort = effort;
         const LevelBsp bsp = compiled(map, options);
         expect_right(map, bsp, "pool");
-        expect_right_places(map, bsp, 2000, 1);
+        expect_right_sectors(map, bsp, 2000, 1);
     }
 }
 
-TEST(BspCompiler, FindsTheSectorOfEveryPlaceOfCrookedGrids) {
+TEST(BspCompiler, FindsTheSectorOfEveryPointOfIrregularGrids) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const Map map = grid_map(3 + static_cast<int>(seed % 5), 2 + static_cast<int>(seed), seed);
         const LevelBsp bsp = compiled(map);
         expect_right(map, bsp, "grid " + std::to_string(seed));
-        expect_right_places(map, bsp, 500, seed);
+        expect_right_sectors(map, bsp, 500, seed);
     }
 }
 
-TEST(BspCompiler, SplitsLessAndStandsDeeperTheMoreACutCosts) {
+TEST(BspCompiler, SplitsLessIfSplitsCostMore) {
     const Map map = grid_map(24, 20, 7);
     std::size_t splits = 1u << 30;
     for (const double weight : {0.0, 1.0, 4.0}) {
@@ -211,7 +211,7 @@ TEST(BspCompiler, SplitsLessAndStandsDeeperTheMoreACutCosts) {
     }
 }
 
-TEST(BspCompiler, TriesOutToGoodEffect) {
+TEST(BspCompiler, ImprovesWithEffort) {
     const Map map = grid_map(24, 20, 3);
     double cost = 1e30;
     for (const Effort effort : efforts) {
@@ -230,7 +230,7 @@ TEST(BspCompiler, MakesTheSameTreeOnEveryThread) {
     const auto bytes_of = [&] {
         Wad wad = wad_of(map);
         EXPECT_TRUE(write_bsp(wad, 0, "grid", map, compiled(map), {true, true}));
-        return *wad.packed();
+        return *wad.to_bytes();
     };
     const auto first = bytes_of();
     std::vector<std::vector<std::byte>> others(8);
@@ -238,7 +238,7 @@ TEST(BspCompiler, MakesTheSameTreeOnEveryThread) {
     for (const auto& other : others) EXPECT_EQ(other, first);
 }
 
-TEST(BspCompiler, LeavesOutLinesOfNoLength) {
+TEST(BspCompiler, SkipsLinesOfZeroLength) {
     Map map = room_map();
     map.lines.push_back(map.lines[0]);
     map.lines.back().to = map.lines.back().from;
@@ -247,10 +247,10 @@ TEST(BspCompiler, LeavesOutLinesOfNoLength) {
     EXPECT_EQ(bsp.segs.size(), 4u);
 }
 
-TEST(BspCompiler, KeepsLinesOverEachOtherAsStrays) {
+TEST(BspCompiler, KeepsOverlappingLinesAsOutliers) {
     Map map = room_map();
-    map.lines.push_back(map.lines[1]);  // the same once more
-    DrawnMap half;                      // and half of one
+    map.lines.push_back(map.lines[1]);  // a duplicate
+    DrawnMap half;                      // and half of another line
     half.map = map;
     half.line({0, 32}, {0, 96}, 0);
     const LevelBsp bsp = compiled(half.map);
@@ -260,18 +260,18 @@ TEST(BspCompiler, KeepsLinesOverEachOtherAsStrays) {
     EXPECT_EQ(bsp.sub_sectors[0].outliers, 2u);
 }
 
-TEST(BspCompiler, CutsAlongALineThatEndsInTheRoom) {
+TEST(BspCompiler, SplitsAlongALineThatEndsInTheRoom) {
     DrawnMap drawn;
     const int room = drawn.sector();
     drawn.loop({{0, 0}, {0, 256}, {256, 256}, {256, 0}}, room);
     drawn.line({64, 64}, {160, 100}, room, room);
     const LevelBsp bsp = compiled(drawn.map);
     expect_right(drawn.map, bsp, "slat");
-    expect_right_places(drawn.map, bsp, 500, 2);
+    expect_right_sectors(drawn.map, bsp, 500, 2);
 }
 
-TEST(BspCompiler, KnowsTheSectorOfDeepWater) {
-    DrawnMap drawn;  // a square of lines with the water on both sides lies within the room
+TEST(BspCompiler, FindsTheSectorOfDeepWater) {
+    DrawnMap drawn;  // a square of lines with the water on both sides, inside the room
     const int room = drawn.sector(), water = drawn.sector(-64);
     drawn.loop({{0, 0}, {0, 256}, {256, 256}, {256, 0}}, room);
     drawn.loop({{64, 64}, {64, 192}, {192, 192}, {192, 64}}, water, water);
@@ -282,7 +282,7 @@ TEST(BspCompiler, KnowsTheSectorOfDeepWater) {
     EXPECT_EQ(sub_sector_at(bsp, {230, 128}).sector, static_cast<std::uint32_t>(room));
 }
 
-TEST(BspCompiler, LetsSectorsThatAreNotClosedReachToTheEdge) {
+TEST(BspCompiler, ExtendsSectorsThatAreNotClosedToTheEdge) {
     Map map = room_map();
     map.lines.pop_back();
     const LevelBsp bsp = compiled(map);
@@ -292,13 +292,13 @@ TEST(BspCompiler, LetsSectorsThatAreNotClosedReachToTheEdge) {
     EXPECT_GT(check.openings, 0u);
 }
 
-TEST(BspCompiler, SurvivesASingleLine) {
+TEST(BspCompiler, CompilesASingleLine) {
     DrawnMap drawn;
     drawn.line({-32768, -32768}, {32767, 32767}, drawn.sector(), 0);
     expect_sound(drawn.map, compiled(drawn.map), "line");
 }
 
-TEST(BspCompiler, SurvivesLinesThatNobodyDrew) {
+TEST(BspCompiler, CompilesRandomLines) {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         const int lines = 1 + static_cast<int>(seed % 40);
         const int reach = seed % 3 == 0 ? 4 : seed % 3 == 1 ? 300 : 32767;
@@ -316,7 +316,7 @@ TEST(BspCompiler, SurvivesLinesThatNobodyDrew) {
 }
 
 TEST(BspCompiler, LosesNoAreaInSlivers) {
-    // Two fans of nearly parallel lines cross: pieces become as thin as whole coordinates allow.
+    // Two fans of nearly parallel lines cross: pieces become as thin as integer coordinates allow.
     DrawnMap drawn;
     const int room = drawn.sector();
     drawn.loop({{-30000, -30000}, {-30000, 30000}, {30000, 30000}, {30000, -30000}}, room);
@@ -329,7 +329,7 @@ TEST(BspCompiler, LosesNoAreaInSlivers) {
     EXPECT_GT(bsp.sub_sectors.size(), 100u);
 }
 
-TEST(BspCompiler, GivesUpWhenPiecesBecomeTooMany) {
+TEST(BspCompiler, RejectsTooManyPieces) {
     CompileOptions options;
     options.max_pieces = 500;
     const auto bsp = compile(soup_map(200, 1000, 1), options);
@@ -337,7 +337,7 @@ TEST(BspCompiler, GivesUpWhenPiecesBecomeTooMany) {
     EXPECT_EQ(bsp.status(), Status::Capacity);
 }
 
-TEST(BspCompiler, RefusesMapsThatPointNowhere) {
+TEST(BspCompiler, RejectsInvalidReferences) {
     const auto refused = [](auto&& change) {
         Map map = room_map();
         change(map);
@@ -353,7 +353,7 @@ TEST(BspCompiler, RefusesMapsThatPointNowhere) {
     }));
 }
 
-TEST(BspCompiler, CompilesWhatDesignersDrew) {
+TEST(BspCompiler, CompilesFreedoomMaps) {
     const auto maps = freedoom_maps();
     if (maps.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     for (const GivenMap& given : maps) {
@@ -365,7 +365,7 @@ TEST(BspCompiler, CompilesWhatDesignersDrew) {
         EXPECT_EQ(check.openings, 0u) << given.file;
         EXPECT_LT(static_cast<double>(bsp.stats.splits), 0.25 * static_cast<double>(bsp.stats.sides)) << given.file;
         EXPECT_LT(bsp.stats.mean_depth, std::log2(static_cast<double>(bsp.sub_sectors.size())) + 0.6) << given.file;
-        if (check.mixed == 0) expect_right_places(given.map, bsp, 300, 4);
+        if (check.mixed == 0) expect_right_sectors(given.map, bsp, 300, 4);
     }
 }
 

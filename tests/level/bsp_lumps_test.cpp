@@ -1,4 +1,4 @@
-/// Trees into WADs and back, and what becomes of broken ones.
+/// Writes trees to WADs, reads them back, and rejects damaged ones.
 #include "fase/level/bsp_lumps.hpp"
 
 #include <gtest/gtest.h>
@@ -28,14 +28,14 @@ Wad written(const Map& map, const LevelBsp& bsp, const LumpOptions& options) {
     Wad wad = wad_of(map);
     const auto done = write_bsp(wad, 0, "test.wad", map, bsp, options);
     EXPECT_TRUE(done) << done.error().text();
-    const auto bytes = wad.packed();
+    const auto bytes = wad.to_bytes();
     EXPECT_TRUE(bytes);
     auto parsed = Wad::parse("test.wad", *bytes);
     EXPECT_TRUE(parsed);
     return *std::move(parsed);
 }
 
-TEST(BspLumps, ComeBackAsTheyWere) {
+TEST(BspLumps, RoundTrip) {
     const Map map = pool_map();
     const LevelBsp bsp = *compile(map);
     for (const Form& form : forms) {
@@ -81,7 +81,7 @@ TEST(BspLumps, ComeBackAsTheyWere) {
     }
 }
 
-TEST(BspLumps, StandInTheOrderOfTheFormat) {
+TEST(BspLumps, AreInTheOrderOfTheFormat) {
     const Map map = pool_map();
     const Wad wad = written(map, *compile(map), {false, true});
     std::vector<std::string> names;
@@ -91,7 +91,7 @@ TEST(BspLumps, StandInTheOrderOfTheFormat) {
                                                "GL_VERT", "GL_SEGS", "GL_SSECT", "GL_NODES"}));
 }
 
-TEST(BspLumps, TakeThePlaceOfOldOnes) {
+TEST(BspLumps, ReplaceOldOnes) {
     const Map map = pool_map();
     const LevelBsp bsp = *compile(map);
     Wad wad = written(map, bsp, {false, true});
@@ -100,13 +100,13 @@ TEST(BspLumps, TakeThePlaceOfOldOnes) {
     const auto count = wad.lumps.size();
     ASSERT_TRUE(write_bsp(wad, 0, "test.wad", map, bsp, {false, true}));
     EXPECT_EQ(wad.lumps.size(), count);
-    EXPECT_EQ(wad.lumps[*wad.find_in_map(0, "REJECT")].bytes.size(), 2u);  // an old one stays
+    EXPECT_EQ(wad.lumps[*wad.find_in_map(0, "REJECT")].bytes.size(), 2u);  // an existing one is kept
     ASSERT_TRUE(write_bsp(wad, 0, "test.wad", map, bsp, {}));
-    EXPECT_EQ(wad.lumps.size(), count - 5);  // GL lumps of a tree that is no more are gone
+    EXPECT_EQ(wad.lumps.size(), count - 5);  // the outdated GL lumps are removed
     EXPECT_EQ(wad.lumps.back().name, "DEMO1");
 }
 
-TEST(BspLumps, GiveEverySubSectorASegHoweverSmall) {
+TEST(BspLumps, HaveASegInEverySubSectorHoweverSmall) {
     // A corner so sharp that pieces near its tip round to points.
     DrawnMap drawn;
     const int room = drawn.sector();
@@ -122,21 +122,22 @@ TEST(BspLumps, GiveEverySubSectorASegHoweverSmall) {
     EXPECT_EQ(again->segs.size(), bsp.stats.wall_segs);
 }
 
-TEST(BspLumps, AreRefusedWhenTheyDoNotFit) {
+TEST(BspLumps, AreRejectedIfTheyDoNotFit) {
     const Map map = room_map();
     LevelBsp bsp = *compile(map);
     bsp.vertices.resize(70000);
     Wad wad = wad_of(map);
-    const auto before = *wad.packed();
+    const auto before = *wad.to_bytes();
     const auto refused = write_bsp(wad, 0, "big.wad", map, bsp, {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text(),
-              "big.wad: MAP01: found 70000 vertices, need at most 65536 in the classic format; write extended nodes");
-    EXPECT_EQ(*wad.packed(), before);
+    EXPECT_EQ(
+        refused.error().text(),
+        "big.wad: MAP01: found 70000 vertices; expected at most 65536 in the classic format; write extended nodes");
+    EXPECT_EQ(*wad.to_bytes(), before);
     EXPECT_TRUE(write_bsp(wad, 0, "big.wad", map, bsp, {true, true}));
 }
 
-TEST(BspLumps, UseWideGlNodesWhenNarrowOnesDoNotFit) {
+TEST(BspLumps, UseWideGlNodesIfNarrowOnesDoNotFit) {
     const Map map = pool_map();
     LevelBsp bsp = *compile(map);
     bsp.vertices.resize(bsp.vertices.size() + 40000);
@@ -149,7 +150,7 @@ TEST(BspLumps, UseWideGlNodesWhenNarrowOnesDoNotFit) {
     EXPECT_EQ(again->segs.size(), bsp.segs.size());
 }
 
-TEST(BspLumps, AreRefusedWhenTheyAreCutShort) {
+TEST(BspLumps, AreRejectedIfTruncated) {
     const Map map = pool_map();
     const LevelBsp bsp = *compile(map);
     for (const Form& form : forms) {
@@ -165,9 +166,9 @@ TEST(BspLumps, AreRefusedWhenTheyAreCutShort) {
                 Wad wad = whole;
                 wad.lumps[i].bytes.resize(size);
                 const auto read = read_bsp("test.wad", wad, 0, again, form.lumps);
-                const bool may_be =
+                const bool may_be_valid =
                     name == "GL_VERT" || (form.options.extended && name != "NODES" && form.lumps == BspLumps::Nodes);
-                EXPECT_TRUE(!read || may_be) << form.name << " " << name << " " << size;
+                EXPECT_TRUE(!read || may_be_valid) << form.name << " " << name << " " << size;
             }
         }
     }
@@ -186,18 +187,18 @@ TEST(BspLumps, SurviveEveryFlippedBit) {
                 wad.lumps[i].bytes[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
                 const auto read = read_bsp("test.wad", wad, 0, again, form.lumps);
                 if (read) {
-                    EXPECT_GE(check_bsp(again, *read).gaps, 0);  // whatever it finds, it ends
+                    EXPECT_GE(check_bsp(again, *read).gaps, 0);  // the check terminates
                 }
             }
         }
     }
 }
 
-TEST(BspLumps, NameWhatIsWrongInThem) {
+TEST(BspLumps, ReportTheInvalidEntry) {
     const Map map = pool_map();
     const Wad whole = written(map, *compile(map), {});
     const Map again = *read_map("test.wad", whole, "MAP01");
-    const auto told = [&](std::string_view lump, std::size_t byte, int value) {
+    const auto message = [&](std::string_view lump, std::size_t byte, int value) {
         Wad wad = whole;
         auto& bytes = wad.lumps[*wad.find_in_map(0, lump)].bytes;
         bytes[byte] = static_cast<std::byte>(value & 0xff);
@@ -205,15 +206,16 @@ TEST(BspLumps, NameWhatIsWrongInThem) {
         const auto read = read_bsp("a.wad", wad, 0, again, BspLumps::Nodes);
         return read ? std::string() : read.error().text();
     };
-    EXPECT_EQ(told("SEGS", 12, 9999).substr(0, 42), "a.wad: MAP01 segs[1]: found vertex 9999, n");
-    EXPECT_EQ(told("SEGS", 6, 500).substr(0, 37), "a.wad: MAP01 segs[0]: found line 500,");
-    EXPECT_NE(told("SSECTORS", 2, 3).find("of another one too"), std::string::npos);
+    EXPECT_EQ(message("SEGS", 12, 9999).substr(0, 42), "a.wad: MAP01 segs[1]: found vertex 9999; e");
+    EXPECT_EQ(message("SEGS", 6, 500).substr(0, 37), "a.wad: MAP01 segs[0]: found line 500;");
+    EXPECT_NE(message("SSECTORS", 2, 3).find("which another sub-sector contains too"), std::string::npos);
     const std::size_t last = (whole.lumps[*whole.find_in_map(0, "NODES")].bytes.size() / 28 - 1) * 28;
-    EXPECT_NE(told("NODES", last + 24, static_cast<int>(last / 28)).find("twice"), std::string::npos);  // its own child
-    EXPECT_NE(told("NODES", 24, 0x9999).find("that does not exist"), std::string::npos);
+    EXPECT_NE(message("NODES", last + 24, static_cast<int>(last / 28)).find("twice"),
+              std::string::npos);  // its own child
+    EXPECT_NE(message("NODES", 24, 0x9999).find("that does not exist"), std::string::npos);
 }
 
-TEST(BspLumps, HoldABlockmapOfAllLines) {
+TEST(BspLumps, IncludeABlockmapOfAllLines) {
     const Map map = pool_map();
     const auto bytes = make_blockmap(map);
     ASSERT_GE(bytes.size(), 8u);
@@ -238,7 +240,7 @@ TEST(BspLumps, HoldABlockmapOfAllLines) {
     }
 }
 
-TEST(BspLumps, ReadWhatOtherCompilersWrote) {
+TEST(BspLumps, ReadTreesOfOtherCompilers) {
     const auto maps = freedoom_maps();
     if (maps.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     for (const GivenMap& given : maps) {
@@ -254,7 +256,7 @@ TEST(BspLumps, ReadWhatOtherCompilersWrote) {
     }
 }
 
-TEST(BinaryAngle, IsThatOfTheCircle) {
+TEST(BinaryAngle, AgreesWithAtan2) {
     EXPECT_EQ(binary_angle(1, 0), 0);
     EXPECT_EQ(binary_angle(0, 1), 16384);
     EXPECT_EQ(binary_angle(-5, 0), 32768);
@@ -265,8 +267,8 @@ TEST(BinaryAngle, IsThatOfTheCircle) {
     for (int i = 0; i < 10000; ++i) {
         const double dx = random.between(-30000, 30000), dy = random.between(-30000, 30000);
         const double turn = std::atan2(dy, dx) / 6.283185307179586 * 65536;
-        const auto wanted = static_cast<std::uint16_t>(static_cast<std::int32_t>(std::floor(turn + 0.5)));
-        EXPECT_LE(static_cast<std::uint16_t>(binary_angle(dx, dy) - wanted + 1), 2) << dx << ", " << dy;
+        const auto expected = static_cast<std::uint16_t>(static_cast<std::int32_t>(std::floor(turn + 0.5)));
+        EXPECT_LE(static_cast<std::uint16_t>(binary_angle(dx, dy) - expected + 1), 2) << dx << ", " << dy;
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Maps for tests: drawn by hand, by chance, and those of Freedoom when they are there.
+/// Maps for tests: drawn by hand, random, and those of Freedoom if they are installed.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace fase::level {
 
-/// A map line by line. Loops around a sector go clockwise.
+/// Builds a map line by line. Loops around a sector are clockwise.
 class DrawnMap {
 public:
     static constexpr int outside = -1;
@@ -56,14 +56,14 @@ private:
     }
 };
 
-/// A square room.
+/// Returns a square room.
 inline Map room_map() {
     DrawnMap drawn;
     drawn.loop({{0, 0}, {0, 128}, {128, 128}, {128, 0}}, drawn.sector());
     return drawn.map;
 }
 
-/// A room with a square pool in it that stands askew, and a pillar in the pool.
+/// Returns a room with a rotated square pool, and a pillar in the pool.
 inline Map pool_map() {
     DrawnMap drawn;
     const int room = drawn.sector(), pool = drawn.sector(-32);
@@ -73,7 +73,7 @@ inline Map pool_map() {
     return drawn.map;
 }
 
-/// Cells of a crooked grid, some of them solid; each cell or row of cells a sector of its own.
+/// Returns an irregular grid of cells, some of them solid; each cell or row of cells is a sector.
 inline Map grid_map(int columns, int rows, std::uint64_t seed) {
     Random random(seed);
     DrawnMap drawn;
@@ -111,12 +111,12 @@ inline Map grid_map(int columns, int rows, std::uint64_t seed) {
     return drawn.map;
 }
 
-/// Lines that nobody drew: they cross, lie over each other, end nowhere, have no length.
+/// Returns random lines: they cross, overlap, end anywhere, some have zero length.
 inline Map soup_map(int lines, int reach, std::uint64_t seed) {
     Random random(seed);
     DrawnMap drawn;
     for (int i = 0; i < 4; ++i) drawn.sector(8 * i);
-    const auto place = [&] {
+    const auto point = [&] {
         const auto one = [&] {
             return static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
         };
@@ -124,12 +124,12 @@ inline Map soup_map(int lines, int reach, std::uint64_t seed) {
         return std::pair(std::max(x, -32768), one());
     };
     for (int i = 0; i < lines; ++i)
-        drawn.line(place(), place(), static_cast<int>(random.below(4)),
+        drawn.line(point(), point(), static_cast<int>(random.below(4)),
                    random.below(2) == 0 ? DrawnMap::outside : static_cast<int>(random.below(4)));
     return drawn.map;
 }
 
-/// The map as lumps of a WAD, without a tree.
+/// Returns a WAD with the lumps of a map, without a tree.
 inline Wad wad_of(const Map& map) {
     Wad wad;
     std::vector<std::byte> things, lines, sides, vertices, sectors;
@@ -167,7 +167,7 @@ struct GivenMap {
     std::size_t marker = 0;
     Map map;
 };
-/// Those that FASE_SHARED_DATA holds; empty when it does not.
+/// Returns the maps in FASE_SHARED_DATA; empty if there are none.
 inline std::vector<GivenMap> freedoom_maps() {
     std::vector<GivenMap> maps;
     const auto folder = std::filesystem::path(FASE_SHARED_DATA) / "freedoom";

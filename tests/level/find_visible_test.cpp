@@ -1,3 +1,4 @@
+/// Compares visible sets and visible areas with rays.
 #include "fase/level/find_visible.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 namespace fase::level {
 namespace {
 
-/// How many passages of sight rays lead into what is told to be hidden.
+/// Counts passages of random rays into sub-sectors that the sets report as hidden.
 struct Checked {
     std::size_t passages = 0, falsely_hidden = 0;
 };
@@ -17,13 +18,13 @@ Checked check_by_rays(const Level& level, const VisibleSets& sets, Heights heigh
     Checked checked;
     const PlanBox box = box_of(level.bsp);
     Random random(9);
-    std::vector<Passage> way;
+    std::vector<Passage> path;
     for (int i = 0; i < rays; ++i) {
         const LevelRay ray = ray_inside(level, box, random);
         const std::uint32_t from = *sub_sector_at(level.bsp, ray.from);
-        way.clear();
-        passages(level.bsp, level.map, ray, heights, way);
-        for (const Passage& passage : way) {
+        path.clear();
+        passages(level.bsp, level.map, ray, heights, path);
+        for (const Passage& passage : path) {
             ++checked.passages;
             checked.falsely_hidden += sets.sees(from, passage.sub_sector) ? 0 : 1;
         }
@@ -37,7 +38,7 @@ Level grid(const std::vector<std::string>& rows) {
     return level;
 }
 
-TEST(VisibleSets, GiveBackTheBitsTheyWereMadeFrom) {
+TEST(VisibleSets, RoundTripBits) {
     for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 700u}) {
         for (const int density : {0, 1, 40, 128, 255, 256}) {
             Random random(count * 1000 + static_cast<std::size_t>(density));
@@ -65,7 +66,7 @@ TEST(VisibleSets, GiveBackTheBitsTheyWereMadeFrom) {
     }
 }
 
-TEST(FindVisible, HidesNothingThatARaySees) {
+TEST(FindVisible, HidesNothingThatARayReaches) {
     const auto levels = freedoom_levels({"e1m1.wad", "map07.wad", "map29.wad", "e4m5.wad"});
     if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     for (const Level& level : levels) {
@@ -82,33 +83,33 @@ TEST(FindVisible, HidesNothingThatARaySees) {
     }
 }
 
-TEST(FindVisible, SeesMostlyWhatPointsSee) {
+TEST(FindVisible, ReportsFewFalsePairs) {
     const auto levels = freedoom_levels({"e1m1.wad"});
     if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     const Level& level = levels[0];
     const auto found = find_visible(level.bsp, level.map);
     ASSERT_TRUE(found);
-    // Pairs that points of one sub-sector see of another are the least that the sets may hold.
+    // The sets must contain at least the pairs that random points see.
     const std::size_t n = level.bsp.sub_sectors.size();
-    std::vector<std::uint8_t> truly(n * n, 0);
+    std::vector<std::uint8_t> visible(n * n, 0);
     const PlanBox box = box_of(level.bsp);
     Random random(12);
     for (int i = 0; i < 8000; ++i) {
-        const Point p = place_inside(level.bsp, box, random);
+        const Point p = point_inside(level.bsp, box, random);
         const std::uint32_t from = *sub_sector_at(level.bsp, p);
         const auto seen = seen_from(level.bsp, level.map, {p, 0});
         ASSERT_TRUE(seen);
         for (const std::uint32_t to : seen->sub_sectors) {
             EXPECT_TRUE(found->sets.sees(from, to));
-            truly[from * n + to] = truly[to * n + from] = 1;
+            visible[from * n + to] = visible[to * n + from] = 1;
         }
     }
-    const auto least = static_cast<std::size_t>(std::count(truly.begin(), truly.end(), std::uint8_t{1}));
+    const auto least = static_cast<std::size_t>(std::count(visible.begin(), visible.end(), std::uint8_t{1}));
     EXPECT_LT(found->stats.pairs, least * 23 / 20);
 }
 
-TEST(FindVisible, KnowsWhatIsBehindCorners) {
-    // An L of squares: its two ends do not see each other; all else near does.
+TEST(FindVisible, HidesWhatIsBehindCorners) {
+    // An L of squares: its two ends do not see each other, but squares near the corner do.
     const Level level = grid({"aaaaaa", "     a", "     a", "     a", "     a"});
     const auto found = find_visible(level.bsp, level.map);
     ASSERT_TRUE(found);
@@ -120,7 +121,7 @@ TEST(FindVisible, KnowsWhatIsBehindCorners) {
     EXPECT_TRUE(found->sets.sees(at(4, 4), at(5, 3)));
 }
 
-TEST(FindVisible, ClosedDoorsHideOnlyWhenHeightsCount) {
+TEST(FindVisible, ClosedDoorsHideOnlyWithHeights) {
     const Level level = grid({"aaacaaa"});
     const auto at = [&](double x) { return *sub_sector_at(level.bsp, {x * 64 + 32, 32}); };
     const auto open = find_visible(level.bsp, level.map);
@@ -131,8 +132,8 @@ TEST(FindVisible, ClosedDoorsHideOnlyWhenHeightsCount) {
     EXPECT_TRUE(shut->sets.sees(at(0), at(2)));
 }
 
-TEST(FindVisible, HighWindowsHideWhatLiesFarBelow) {
-    // Through a low gap and then a high one close behind it no straight line runs on far.
+TEST(FindVisible, LowAndHighGapsInARowHide) {
+    // No straight line passes a low gap and, close behind it, a high one, and goes far.
     const auto room = [](char c) {
         return c == 'l' ? std::pair{0, 8} : c == 'h' ? std::pair{120, 128} : std::pair{0, 128};
     };
@@ -159,7 +160,7 @@ TEST(FindVisible, IsSymmetricAndSeesItself) {
     }
 }
 
-TEST(FindVisible, GivesTheCoarseAnswerWhenStepsRunOut) {
+TEST(FindVisible, ReturnsCoarseSetsWhenStepsRunOut) {
     const auto levels = freedoom_levels({"e1m1.wad"});
     if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     const Level& level = levels[0];
@@ -176,7 +177,7 @@ TEST(FindVisible, GivesTheCoarseAnswerWhenStepsRunOut) {
     EXPECT_EQ(check_by_rays(level, coarse->sets, Heights::Ignored, 3000).falsely_hidden, 0u);
 }
 
-TEST(FindVisible, GivesTheSameSetsForAnyNumberOfThreads) {
+TEST(FindVisible, ReturnsTheSameSetsForAnyNumberOfThreads) {
     const auto levels = freedoom_levels({"e1m1.wad"});
     if (levels.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     const auto two = make_thread_runner(2), three = make_thread_runner(3);
@@ -189,15 +190,15 @@ TEST(FindVisible, GivesTheSameSetsForAnyNumberOfThreads) {
     }
 }
 
-TEST(FindVisible, SaysHowMuchMemoryItNeeds) {
+TEST(FindVisible, RejectsTooLittleMemory) {
     const Level level = grid({"aaaaa"});
     const auto refused = find_visible(level.bsp, level.map, {.max_bytes = 3});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.status(), Status::Capacity);
-    EXPECT_EQ(refused.error().where, "VisibleOptions.most_bytes");
+    EXPECT_EQ(refused.error().where, "VisibleOptions.max_bytes");
 }
 
-TEST(SeenFrom, SeesWhatRaysMeet) {
+TEST(SeenFrom, ContainsWhatRaysReach) {
     auto levels = freedoom_levels({"e1m1.wad", "map07.wad"});
     levels.push_back(grid({"aaaaa", "a a a", "aaaaa", "a   a", "aacaa"}));
     for (const Level& level : levels) {
@@ -212,9 +213,9 @@ TEST(SeenFrom, SeesWhatRaysMeet) {
                 for (int k = 0; k < 100; ++k) {
                     ray.direction = {double(random.between(-1, 1)), double(random.between(-1, 1))};
                     ray.rise = double(random.between(-0.5f, 0.5f));
-                    std::vector<Passage> way;
-                    passages(level.bsp, level.map, ray, heights, way);
-                    for (const Passage& passage : way) {
+                    std::vector<Passage> path;
+                    passages(level.bsp, level.map, ray, heights, path);
+                    for (const Passage& passage : path) {
                         if (passage.to - passage.from < 1e-6 * passage.to) continue;
                         EXPECT_TRUE(
                             std::binary_search(seen->sub_sectors.begin(), seen->sub_sectors.end(), passage.sub_sector))
@@ -226,30 +227,30 @@ TEST(SeenFrom, SeesWhatRaysMeet) {
     }
 }
 
-TEST(SeenFrom, MeasuresTheSurfaceThatRaysSweep) {
-    // A square of 3 by 3 around a pillar, seen from the middle of a side.
+TEST(SeenFrom, HasTheAreaThatRaysReach) {
+    // A square of 3 by 3 cells around a pillar, seen from the middle of a side.
     const Level level = grid({"aaa", "a a", "aaa"});
     const auto all = seen_from(level.bsp, level.map, {{96, 32}, 0});
     ASSERT_TRUE(all);
-    // The lower row at least, and no more than the columns beside the pillar too.
+    // At least the lower row, at most also the columns beside the pillar.
     const double lower = 192 * 64, column = 64 * 128;
     EXPECT_LT(all->area, lower + 2 * column);
     EXPECT_GT(all->area, lower);
-    // Against the count of points that a line from the eye reaches.
+    // Compares with the number of random points that a line from the eye reaches.
     Random random(30);
     const PlanBox box = box_of(level.bsp);
     int seen = 0;
-    constexpr int asked = 40000;
-    for (int i = 0; i < asked; ++i) {
-        const Point p = place_in(box, random);
+    constexpr int samples = 40000;
+    for (int i = 0; i < samples; ++i) {
+        const Point p = point_in(box, random);
         if (!sub_sector_at(level.bsp, p)) continue;
         const auto hit = cast_ray(level.bsp, level.map, {{96, 32}, 0, {p.x - 96, p.y - 32}, 0, 1}, Heights::Ignored);
         seen += hit ? 0 : 1;
     }
-    EXPECT_NEAR(all->area, 192.0 * 192.0 * seen / asked, 192 * 192 * 0.02);
+    EXPECT_NEAR(all->area, 192.0 * 192.0 * seen / samples, 192 * 192 * 0.02);
 }
 
-/// Lines anywhere over each other, sectors that are not closed.
+/// Returns random lines that overlap, with sectors that are not closed.
 Map scribble(std::uint64_t seed) {
     Random random(seed);
     Map map;
@@ -260,8 +261,8 @@ Map scribble(std::uint64_t seed) {
         sector.ceiling = static_cast<std::int16_t>(50 + random.below(100));
         map.sectors.push_back(sector);
     }
-    const auto place = [&] { return static_cast<std::int16_t>(8 * random.below(20)); };
-    for (int i = 0; i < 24; ++i) map.vertices.push_back({place(), place()});
+    const auto coordinate = [&] { return static_cast<std::int16_t>(8 * random.below(20)); };
+    for (int i = 0; i < 24; ++i) map.vertices.push_back({coordinate(), coordinate()});
     for (int i = 0; i < 30; ++i) {
         Line line;
         line.from = static_cast<std::uint16_t>(random.below(24));
@@ -278,7 +279,7 @@ Map scribble(std::uint64_t seed) {
     return map;
 }
 
-TEST(FindVisible, AnswersForMapsThatAreNoPlans) {
+TEST(FindVisible, HandlesMalformedMaps) {
     int compiled = 0;
     for (std::uint64_t seed = 0; seed < 24; ++seed) {
         Level level{"scribble", scribble(seed), {}};
@@ -291,18 +292,18 @@ TEST(FindVisible, AnswersForMapsThatAreNoPlans) {
         for (const Heights heights : {Heights::Ignored, Heights::Counted}) {
             const auto found = find_visible(level.bsp, level.map, {.heights = heights});
             ASSERT_TRUE(found);
-            std::vector<Passage> way;
+            std::vector<Passage> path;
             for (int i = 0; i < 300; ++i) {
-                const Point from = place_in(box, random);
+                const Point from = point_in(box, random);
                 const auto cell = sub_sector_at(level.bsp, from);
                 const LevelRay ray{from, 60, {double(random.between(-1, 1)), double(random.between(-1, 1))}, 0};
                 EXPECT_EQ(cast_ray(level.bsp, level.map, ray, heights).has_value(),
-                          cast_ray_at_all(level.bsp, level.map, ray, heights).has_value());
+                          cast_ray_brute_force(level.bsp, level.map, ray, heights).has_value());
                 EXPECT_EQ(seen_from(level.bsp, level.map, {from, 60}, heights).has_value(), cell.has_value());
                 if (!cell || heights == Heights::Counted) continue;
-                way.clear();
-                passages(level.bsp, level.map, ray, heights, way);
-                for (const Passage& passage : way)
+                path.clear();
+                passages(level.bsp, level.map, ray, heights, path);
+                for (const Passage& passage : path)
                     EXPECT_TRUE(found->sets.sees(*cell, passage.sub_sector)) << "seed " << seed;
             }
         }
@@ -310,7 +311,7 @@ TEST(FindVisible, AnswersForMapsThatAreNoPlans) {
     EXPECT_GT(compiled, 20);
 }
 
-TEST(SeenFrom, KnowsNothingOutside) {
+TEST(SeenFrom, ReturnsNulloptOutside) {
     const Level level = grid({"aaa"});
     EXPECT_FALSE(seen_from(level.bsp, level.map, {{-50, 0}, 0}));
     EXPECT_FALSE(seen_from(level.bsp, level.map, {{std::numeric_limits<double>::quiet_NaN(), 0}, 0}));

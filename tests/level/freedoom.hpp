@@ -1,5 +1,5 @@
 #pragma once
-/// The levels that are given, compiled; and places and rays in them.
+/// Compiled levels for tests, and random points and rays in them.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -19,7 +19,7 @@ struct Level {
     LevelBsp bsp;
 };
 
-/// Of those whose file names are asked for; none when there are none on this machine.
+/// Returns the Freedoom levels with these file names; skips files that do not exist.
 inline std::vector<Level> freedoom_levels(const std::vector<std::string>& files) {
     std::vector<Level> levels;
     for (const std::string& file : files) {
@@ -40,29 +40,29 @@ inline PlanBox box_of(const LevelBsp& bsp) {
     for (const Point& p : bsp.vertices) box.add(p);
     return box;
 }
-/// Anywhere in the box around the level.
-inline Point place_in(const PlanBox& box, Random& random) {
+/// Returns a random point in a box.
+inline Point point_in(const PlanBox& box, Random& random) {
     return {box.lo.x + (box.hi.x - box.lo.x) * double(random.unit()),
             box.lo.y + (box.hi.y - box.lo.y) * double(random.unit())};
 }
-/// Inside the level.
-inline Point place_inside(const LevelBsp& bsp, const PlanBox& box, Random& random) {
+/// Returns a random point inside the level.
+inline Point point_inside(const LevelBsp& bsp, const PlanBox& box, Random& random) {
     for (;;) {
-        const Point p = place_in(box, random);
+        const Point p = point_in(box, random);
         if (sub_sector_at(bsp, p)) return p;
     }
 }
-/// From some height of a place inside, in any direction.
+/// Returns a random ray from a point and height inside the level.
 inline LevelRay ray_inside(const Level& level, const PlanBox& box, Random& random) {
-    const Point from = place_inside(level.bsp, box, random);
+    const Point from = point_inside(level.bsp, box, random);
     const Opening room = opening_of(level.map, *sector_at(level.bsp, from));
     const double z = room.floor + (room.ceiling - room.floor) * double(random.unit());
     const Point direction{double(random.between(-1, 1)), double(random.between(-1, 1))};
     return {from, z, direction, double(random.between(-0.3f, 0.3f))};
 }
 
-/// A map of rooms on a grid, from rows of letters: each letter a square of 64 with its own sector, ' ' a solid one.
-/// `room(letter)` gives floor and ceiling.
+/// Returns a map on a grid, from rows of letters: each letter is a square of 64 units with its own sector, ' ' is
+/// solid. `room(letter)` returns floor and ceiling.
 template <class Room> Map grid_map(const std::vector<std::string>& rows, Room&& room) {
     Map map;
     map.name = "MAP01";
@@ -94,7 +94,7 @@ template <class Room> Map grid_map(const std::vector<std::string>& rows, Room&& 
         map.sides.push_back(side);
         return static_cast<std::uint16_t>(map.sides.size() - 1);
     };
-    // Between a square on the right of the way and one on the left.
+    // Adds a line between the square on its right and the one on its left.
     const auto add_line = [&](std::uint16_t from, std::uint16_t to, int rx, int ry, int lx, int ly) {
         if (at(rx, ry) == ' ' && at(lx, ly) == ' ') return;
         if (at(rx, ry) == ' ') {

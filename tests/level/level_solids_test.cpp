@@ -1,3 +1,4 @@
+/// Solid shapes of levels: free interiors, closed walls, bodies that stay inside.
 #include "fase/level/level_solids.hpp"
 
 #include <gtest/gtest.h>
@@ -30,12 +31,12 @@ Level ring() {
     return level;
 }
 
-/// Is a place in a shape of that pose, by more than `depth` metres?
-bool in_solid(const LevelSolid& solid, Vec3d place, double depth) {
-    const Vec3 p = rotate_back(solid.pose.rotation, to_float(place - to_double(solid.pose.position)));
+/// Returns whether a point is inside a solid, deeper than `depth` metres.
+bool in_solid(const LevelSolid& solid, Vec3d point, double depth) {
+    const Vec3 p = rotate_back(solid.pose.rotation, to_float(point - to_double(solid.pose.position)));
     if (const Box* box = std::get_if<Box>(&solid.shape)) {
-        const Vec3 room = box->half - abs(p);
-        return std::min({room.x, room.y, room.z}) > depth;
+        const Vec3 inside = box->half - abs(p);
+        return std::min({inside.x, inside.y, inside.z}) > depth;
     }
     for (const ConvexHull::Face& face : std::get<ConvexHull>(solid.shape).faces)
         if (signed_distance(face.plane, p) > -depth) return false;
@@ -48,7 +49,7 @@ LevelSolids solids_of(const Level& level) {
     return *std::move(solids);
 }
 
-TEST(LevelSolids, LeaveTheRoomsFreeAndFillTheRest) {
+TEST(LevelSolids, LeaveTheInteriorFreeAndFillTheRest) {
     auto levels = freedoom_levels({"e1m1.wad"});
     levels.push_back(ring());
     for (const Level& level : levels) {
@@ -57,7 +58,7 @@ TEST(LevelSolids, LeaveTheRoomsFreeAndFillTheRest) {
         Random random(3);
         int free = 0, filled = 0;
         for (int i = 0; i < 3000; ++i) {
-            const Point p = place_inside(level.bsp, box, random);
+            const Point p = point_inside(level.bsp, box, random);
             const std::uint32_t sector = *sector_at(level.bsp, p);
             const Opening room = opening_of(level.map, sector);
             const double z = room.floor - 100 + (room.ceiling - room.floor + 200) * double(random.unit());
@@ -99,7 +100,7 @@ TEST(LevelSolids, HaveAWallBehindEachOneSidedLine) {
     }
 }
 
-TEST(LevelSolids, ShowFloorsFromAboveAndWallsFromInside) {
+TEST(LevelSolids, HaveMeshesOfFloorsFromAboveAndWallsFromInside) {
     const Level level = ring();
     const LevelSolids solids = solids_of(level);
     ASSERT_EQ(solids.floors.size(), 1u);
@@ -111,7 +112,7 @@ TEST(LevelSolids, ShowFloorsFromAboveAndWallsFromInside) {
             0.5f * cross(floors.positions[floors.indices[t + 1]] - a, floors.positions[floors.indices[t + 2]] - a).y;
     }
     EXPECT_FLOAT_EQ(area, 17 * 4);  // squares of 2 m
-    // Seen from the middle of the closed chamber, its four walls look inward.
+    // The four walls of the closed chamber face its middle.
     const TriangleMesh& walls = solids.walls.begin()->second;
     const Vec3 middle = to_float(to_world({160, 160}, 64, scale));
     int near = 0;
@@ -128,7 +129,7 @@ TEST(LevelSolids, ShowFloorsFromAboveAndWallsFromInside) {
     EXPECT_EQ(near, 8);
 }
 
-TEST(LevelSolids, HoldBodiesForAMinute) {
+TEST(LevelSolids, KeepBodiesInsideForAMinute) {
     const Level level = ring();
     const LevelSolids solids = solids_of(level);
     auto world = World::create();
@@ -141,8 +142,8 @@ TEST(LevelSolids, HoldBodiesForAMinute) {
     Random random(8);
     std::vector<BodyId> bodies;
     while (bodies.size() < 40) {
-        const Point p = place_in(box, random);
-        const auto room = room_around(level.bsp, level.map, p, 13);
+        const Point p = point_in(box, random);
+        const auto room = clearance_around(level.bsp, level.map, p, 13);
         if (!room || room->ceiling - room->floor < 30) continue;
         const double z = room->floor + 14 + (room->ceiling - room->floor - 28) * double(random.unit());
         const Shape shapes[] = {Sphere{0.25f}, Box{{0.2f, 0.2f, 0.2f}}, Capsule{0.15f, 0.2f}};
@@ -162,7 +163,7 @@ TEST(LevelSolids, HoldBodiesForAMinute) {
     }
 }
 
-TEST(LevelSolids, TellInsideFromOutside) {
+TEST(LevelSolids, SeparateInsideFromOutside) {
     const Level level = ring();
     const auto inside = [&](double x, double y, double z) {
         return is_inside(level.bsp, level.map, to_world({x, y}, z, scale), scale, 0.01);
@@ -177,24 +178,24 @@ TEST(LevelSolids, TellInsideFromOutside) {
     EXPECT_FALSE(inside(std::numeric_limits<double>::quiet_NaN(), 0, 0));
 }
 
-TEST(LevelRoom, TellsHowHighACylinderMayStand) {
+TEST(LevelRoom, HasTheClearanceOfACylinder) {
     const Level level = ring();
     const auto room = [&](double x, double y, double radius) {
-        return room_around(level.bsp, level.map, {x, y}, radius);
+        return clearance_around(level.bsp, level.map, {x, y}, radius);
     };
     ASSERT_TRUE(room(32, 32, 20));
     EXPECT_EQ(room(32, 32, 20)->floor, 0);
     EXPECT_EQ(room(32, 32, 20)->ceiling, 128);
     EXPECT_FALSE(room(32, 32, 33));
     EXPECT_FALSE(room(-5, 32, 1));
-    ASSERT_TRUE(room(110, 32, 20));  // reaches over the pit's edge: stands on the edge
+    ASSERT_TRUE(room(110, 32, 20));  // overlaps the edge of the pit: the higher floor counts
     EXPECT_EQ(room(160, 32, 20)->floor, -64);
     EXPECT_EQ(room(135, 32, 20)->floor, 0);
     EXPECT_EQ(room(288, 96, 20)->floor, 24);
     EXPECT_EQ(room(288, 96, 20)->ceiling, 72);
 }
 
-TEST(LevelSolids, AreMadeOfMapsThatAreNotClosed) {
+TEST(LevelSolids, AreMadeFromMapsThatAreNotClosed) {
     auto levels = freedoom_levels({"e1m1.wad"});
     levels.push_back(ring());
     for (Level& level : levels) {
@@ -212,7 +213,7 @@ TEST(LevelSolids, AreMadeOfMapsThatAreNotClosed) {
     }
 }
 
-TEST(LevelSolids, RefuseOddScales) {
+TEST(LevelSolids, RejectInvalidOptions) {
     const Level level = ring();
     for (const double bad :
          {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

@@ -1,4 +1,4 @@
-/// Plans as SVG and pixels.
+/// Draws plans as SVG and pixels.
 #include "fase/level/plan_drawing.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Colour pixel_at(const Pixels& pixels, int x, int y) {
     return {p[0], p[1], p[2], p[3]};
 }
 
-TEST(Drawing, FillsWhatItCovers) {
+TEST(Drawing, FillsThePixelsOfAPolygon) {
     Drawing drawing;
     drawing.width = drawing.height = 10;
     drawing.polygon({{2, 2}, {7.5, 2}, {7.5, 6}, {2, 6}}, {200, 0, 0, 255});
@@ -28,7 +28,7 @@ TEST(Drawing, FillsWhatItCovers) {
     EXPECT_EQ(pixel_at(pixels, 7, 4).green, 128);  // half covered
 }
 
-TEST(Drawing, LeavesOutWhatLiesBesideThePage) {
+TEST(Drawing, ClipsMarksToThePage) {
     Drawing drawing;
     drawing.width = drawing.height = 8;
     drawing.polygon({{-1e9, -1e9}, {1e9, -1e9}, {1e9, 1e9}, {-1e9, 1e9}}, {0, 0, 250, 255});
@@ -40,7 +40,7 @@ TEST(Drawing, LeavesOutWhatLiesBesideThePage) {
     EXPECT_EQ(pixel_at(pixels, 7, 4), (Colour{9, 9, 9, 255}));
 }
 
-TEST(Drawing, EscapesWords) {
+TEST(Drawing, EscapesText) {
     Drawing drawing;
     drawing.text({1, 2}, 6, "a<b & c>d", {0, 0, 0, 255});
     EXPECT_NE(svg_of(drawing).find("a&lt;b &amp; c&gt;d"), std::string::npos);
@@ -49,9 +49,9 @@ TEST(Drawing, EscapesWords) {
 TEST(PlanDrawing, ShowsEverySubSectorLineAndTheEye) {
     const Map map = pool_map();
     const LevelBsp bsp = *compile(map);
-    PlanLook look;
-    look.title = "MAP01";
-    const Drawing plain = draw_plan(map, bsp, look);
+    PlanOptions options;
+    options.title = "MAP01";
+    const Drawing plain = draw_plan(map, bsp, options);
     const auto count = [](const Drawing& drawing, Mark::Kind kind) {
         return std::count_if(drawing.marks.begin(), drawing.marks.end(), [&](const Mark& m) { return m.kind == kind; });
     };
@@ -65,9 +65,9 @@ TEST(PlanDrawing, ShowsEverySubSectorLineAndTheEye) {
             EXPECT_LE(p.y, plain.height);
         }
     }
-    look.eye = Point{20, 20};
-    look.seen = {0, 1, 100000};
-    EXPECT_GT(draw_plan(map, bsp, look).marks.size(), plain.marks.size() + 3);
+    options.eye = Point{20, 20};
+    options.seen = {0, 1, 100000};
+    EXPECT_GT(draw_plan(map, bsp, options).marks.size(), plain.marks.size() + 3);
     EXPECT_EQ(svg_of(plain), svg_of(draw_plan(map, bsp, {"MAP01", "", {}, {}, {}})));
     EXPECT_EQ(svg_of(plain).substr(0, 4), "<svg");
 }

@@ -1,3 +1,4 @@
+/// Compares 3D BSP trees with brute force and with formulas.
 #include "fase/level/polygon_bsp.hpp"
 
 #include <gtest/gtest.h>
@@ -29,12 +30,12 @@ std::vector<Named> closed_meshes() {
     append(overlapping, triangles(Sphere{1}, 12), {0.7f, 0.4f, 0.9f});
     all.push_back({"two overlapping solids", overlapping});
     TriangleMesh hollow = triangles(Box{{1, 1, 1}});
-    append(hollow, turned(triangles(Box{{0.5f, 0.5f, 0.5f}})));
+    append(hollow, flipped(triangles(Box{{0.5f, 0.5f, 0.5f}})));
     all.push_back({"hollow box", hollow});
     TriangleMesh touching = triangles(Box{{1, 1, 1}});
     append(touching, triangles(Box{{1, 0.5f, 0.5f}}), {2, 0, 0});
     all.push_back({"touching boxes", touching});
-    all.push_back({"inside out", turned(concave_l())});
+    all.push_back({"inside out", flipped(concave_l())});
     return all;
 }
 
@@ -54,20 +55,20 @@ std::vector<Named> given_meshes() {
 struct Box3 {
     Vec3d lo, hi;
 };
-Box3 box_of(const TriangleMesh& mesh, double grown) {
+Box3 box_of(const TriangleMesh& mesh, double margin) {
     Box3 box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
     for (const std::uint32_t i : mesh.indices) {
         box.lo = min(box.lo, to_double(mesh.positions[i]));
         box.hi = max(box.hi, to_double(mesh.positions[i]));
     }
-    const Vec3d more = (box.hi - box.lo) * grown;
+    const Vec3d more = (box.hi - box.lo) * margin;
     return {box.lo - more, box.hi + more};
 }
-Vec3d place_in(const Box3& box, Random& random) {
-    const auto at = [&](double lo, double hi) { return lo + (hi - lo) * double(random.unit()); };
-    return {at(box.lo.x, box.hi.x), at(box.lo.y, box.hi.y), at(box.lo.z, box.hi.z)};
+Vec3d point_in(const Box3& box, Random& random) {
+    const auto between = [&](double lo, double hi) { return lo + (hi - lo) * double(random.unit()); };
+    return {between(box.lo.x, box.hi.x), between(box.lo.y, box.hi.y), between(box.lo.z, box.hi.z)};
 }
-/// May the tree be in doubt about the side of a surface on which the point lies?
+/// Returns whether the point is within the tolerance of the tree around a plane.
 bool near_surface(const PolygonBsp& tree, Vec3d p) {
     const double near = 4 * tree.thickness();
     for (std::size_t t = 0; t < tree.mesh().indices.size() / 3; ++t) {
@@ -90,7 +91,7 @@ PolygonBsp built(const TriangleMesh& mesh, const PolygonBspOptions& options = {}
     return *std::move(tree);
 }
 
-TEST(PolygonBsp, FindsSolidWhatTheMeshGoesAround) {
+TEST(PolygonBsp, FindsTheInteriorOfClosedMeshesSolid) {
     for (const Named& one : closed_meshes()) {
         const PolygonBsp tree = built(one.mesh);
         EXPECT_TRUE(tree.stats().closed) << one.name;
@@ -99,9 +100,9 @@ TEST(PolygonBsp, FindsSolidWhatTheMeshGoesAround) {
         const Box3 box = box_of(one.mesh, 0.2);
         std::size_t solid = 0;
         for (int i = 0; i < 4000; ++i) {
-            const Vec3d p = place_in(box, random);
+            const Vec3d p = point_in(box, random);
             const bool expected = winding_number(one.mesh, p) != 0;
-            if (tree.solid(p) != expected) {
+            if (tree.is_solid(p) != expected) {
                 EXPECT_TRUE(near_surface(tree, p)) << one.name << ": " << p.x << ", " << p.y << ", " << p.z;
             }
             solid += expected ? 1 : 0;
@@ -111,26 +112,26 @@ TEST(PolygonBsp, FindsSolidWhatTheMeshGoesAround) {
     }
 }
 
-TEST(PolygonBsp, KnowsTheShapesByTheirFormulas) {
+TEST(PolygonBsp, AgreesWithFormulasOfShapes) {
     const PolygonBsp l = built(concave_l()), ring = built(torus(2, 0.75f, 64, 32)),
                      ball = built(triangles(Sphere{1}, 48));
     Random random(3);
     const Box3 box{{-3, -3, -1}, {3, 3, 2}};
     for (int i = 0; i < 4000; ++i) {
-        const Vec3d p = place_in(box, random);
+        const Vec3d p = point_in(box, random);
         const bool in_l = p.z > 0 && p.z < 1 && p.x > 0 && p.y > 0 && p.x < 2 && p.y < 2 && (p.x < 1 || p.y < 1);
-        EXPECT_EQ(l.solid(p), in_l);
+        EXPECT_EQ(l.is_solid(p), in_l);
         const double out = std::sqrt(p.x * p.x + p.y * p.y) - 2, from_tube = std::sqrt(out * out + p.z * p.z);
         if (std::abs(from_tube - 0.75) > 0.02) {
-            EXPECT_EQ(ring.solid(p), from_tube < 0.75);
+            EXPECT_EQ(ring.is_solid(p), from_tube < 0.75);
         }
         if (std::abs(length(p) - 1) > 0.02) {
-            EXPECT_EQ(ball.solid(p), length(p) < 1);
+            EXPECT_EQ(ball.is_solid(p), length(p) < 1);
         }
     }
 }
 
-TEST(PolygonBsp, MeetsWithRaysWhatAskingAllTrianglesMeets) {
+TEST(PolygonBsp, CastsRaysLikeBruteForce) {
     auto meshes = closed_meshes();
     for (Named& one : given_meshes()) meshes.push_back(std::move(one));
     for (const Named& one : meshes) {
@@ -139,8 +140,8 @@ TEST(PolygonBsp, MeetsWithRaysWhatAskingAllTrianglesMeets) {
         const Box3 box = box_of(one.mesh, 0.3);
         std::size_t hits = 0;
         for (int i = 0; i < 1500; ++i) {
-            const Vec3d from = place_in(box, random);
-            Vec3d to = place_in(box, random);
+            const Vec3d from = point_in(box, random);
+            Vec3d to = point_in(box, random);
             if (i % 5 == 0) {  // straight at a corner of a triangle
                 const std::uint32_t index = one.mesh.indices[random.below(one.mesh.indices.size())];
                 to = to_double(one.mesh.positions[index]);
@@ -148,7 +149,7 @@ TEST(PolygonBsp, MeetsWithRaysWhatAskingAllTrianglesMeets) {
             Ray ray{from, normalized(to_float(to - from))};
             if (i % 7 == 0) ray.direction = {0, i % 2 == 0 ? 1.0f : -1.0f, 0};
             if (i % 3 == 0) ray.length = static_cast<float>(length(to - from));
-            const auto expected = cast_ray_at_all(one.mesh, ray);
+            const auto expected = cast_ray_brute_force(one.mesh, ray);
             EXPECT_EQ(tree.cast_ray(ray), expected) << one.name << " ray " << i;
             hits += expected ? 1 : 0;
         }
@@ -158,7 +159,7 @@ TEST(PolygonBsp, MeetsWithRaysWhatAskingAllTrianglesMeets) {
     }
 }
 
-TEST(PolygonBsp, LosesNoSurfaceToCuts) {
+TEST(PolygonBsp, LosesNoAreaToSplits) {
     auto meshes = closed_meshes();
     for (Named& one : given_meshes()) meshes.push_back(std::move(one));
     for (const Named& one : meshes) {
@@ -172,16 +173,16 @@ TEST(PolygonBsp, LosesNoSurfaceToCuts) {
     }
 }
 
-/// Pieces in the order of front_to_back(); the place of each.
+/// Returns the position of each piece in the order of front_to_back().
 std::vector<std::size_t> order_from(const PolygonBsp& tree, Vec3d eye) {
-    std::vector<std::size_t> place(tree.pieces().size(), 0);
+    std::vector<std::size_t> position(tree.pieces().size(), 0);
     std::size_t next = 0;
-    tree.front_to_back(eye, [&](const PolygonSight& sight) {
+    tree.front_to_back(eye, [&](const PolygonVisit& sight) {
         ++next;
-        for (const std::uint32_t piece : sight.pieces) place[piece] = next;
+        for (const std::uint32_t piece : sight.pieces) position[piece] = next;
         return true;
     });
-    return place;
+    return position;
 }
 
 TEST(PolygonBsp, OrdersPiecesSoThatNoneHidesAnEarlierOne) {
@@ -190,23 +191,23 @@ TEST(PolygonBsp, OrdersPiecesSoThatNoneHidesAnEarlierOne) {
         Random random(5);
         const Box3 box = box_of(one.mesh, 0.5);
         for (int eye_number = 0; eye_number < 8; ++eye_number) {
-            const Vec3d eye = place_in(box, random);
-            const std::vector<std::size_t> place = order_from(tree, eye);
-            EXPECT_EQ(std::count(place.begin(), place.end(), std::size_t{0}), 0) << one.name;
+            const Vec3d eye = point_in(box, random);
+            const std::vector<std::size_t> position = order_from(tree, eye);
+            EXPECT_EQ(std::count(position.begin(), position.end(), std::size_t{0}), 0) << one.name;
             for (int i = 0; i < 60; ++i) {
-                const Vec3d way = place_in(box, random) - eye;
-                std::vector<std::pair<double, std::size_t>> met;
+                const Vec3d direction = point_in(box, random) - eye;
+                std::vector<std::pair<double, std::size_t>> hits_on_ray;
                 for (std::size_t p = 0; p < tree.pieces().size(); ++p) {
                     const auto corners = tree.corners(tree.pieces()[p]);
                     for (std::size_t k = 2; k < corners.size(); ++k) {
-                        const auto hit = ray_triangle(eye, way, {corners[0], corners[k - 1], corners[k]});
-                        if (hit && hit->margin > 1e-4) met.emplace_back(hit->at, place[p]);
+                        const auto hit = ray_triangle(eye, direction, {corners[0], corners[k - 1], corners[k]});
+                        if (hit && hit->margin > 1e-4) hits_on_ray.emplace_back(hit->distance, position[p]);
                     }
                 }
-                std::sort(met.begin(), met.end());
-                for (std::size_t k = 1; k < met.size(); ++k) {
-                    if (met[k].first > met[k - 1].first + 1e-5) {
-                        EXPECT_GE(met[k].second, met[k - 1].second) << one.name;
+                std::sort(hits_on_ray.begin(), hits_on_ray.end());
+                for (std::size_t k = 1; k < hits_on_ray.size(); ++k) {
+                    if (hits_on_ray[k].first > hits_on_ray[k - 1].first + 1e-5) {
+                        EXPECT_GE(hits_on_ray[k].second, hits_on_ray[k - 1].second) << one.name;
                     }
                 }
             }
@@ -214,15 +215,15 @@ TEST(PolygonBsp, OrdersPiecesSoThatNoneHidesAnEarlierOne) {
     }
 }
 
-TEST(PolygonBsp, EndsTheOrderWhenTold) {
+TEST(PolygonBsp, StopsWhenVisitReturnsFalse) {
     const PolygonBsp tree = built(triangles(Sphere{1}, 12));
     int calls = 0;
-    tree.front_to_back({3, 0, 0}, [&](const PolygonSight&) { return ++calls < 4; });
+    tree.front_to_back({3, 0, 0}, [&](const PolygonVisit&) { return ++calls < 4; });
     EXPECT_EQ(calls, 4);
 }
 
-TEST(PolygonBsp, CountsAWallOfManyTrianglesAsOnePlane) {
-    // A square of 8 by 8, turned so that no corner is a round number: 128 triangles, two leaves.
+TEST(PolygonBsp, TreatsAWallOfManyTrianglesAsOnePlane) {
+    // A rotated square of 8 by 8 cells, with rounded coordinates: 128 triangles, two leaves.
     TriangleMesh mesh;
     const Vec3 right = normalized(Vec3{1, 0.3f, 0.7f}), up = normalized(cross(right, Vec3{0.2f, 0.9f, -0.4f}));
     for (std::uint32_t i = 0; i <= 8; ++i)
@@ -233,20 +234,20 @@ TEST(PolygonBsp, CountsAWallOfManyTrianglesAsOnePlane) {
             for (const std::uint32_t c :
                  {i * 9 + k, i * 9 + k + 9, i * 9 + k + 10, i * 9 + k, i * 9 + k + 10, i * 9 + k + 1})
                 mesh.indices.push_back(c);
-    const PolygonBsp tree = built(mesh, {.few = 1000});
+    const PolygonBsp tree = built(mesh, {.small_set = 1000});
     EXPECT_EQ(tree.stats().nodes, 1u);
     EXPECT_EQ(tree.stats().splits, 0u);
     EXPECT_FALSE(tree.stats().closed);
 }
 
-TEST(PolygonBsp, HasFewLevelsForConvexSets) {
+TEST(PolygonBsp, IsShallowForConvexSets) {
     const PolygonBsp tree = built(triangles(Sphere{1}, 64));
     EXPECT_GT(tree.stats().triangles, 3000u);
     EXPECT_LT(tree.stats().worst_depth, 64u);
     EXPECT_LT(tree.stats().mean_depth, 30);
 }
 
-TEST(PolygonBsp, AnswersTheSameWhenALimitLeavesPolygonsInLeaves) {
+TEST(PolygonBsp, AnswersTheSameWithMixedLeaves) {
     const TriangleMesh mesh = torus(2, 0.75f, 40, 16);
     for (const PolygonBspOptions& options :
          {PolygonBspOptions{.max_depth = 3}, PolygonBspOptions{.max_pieces = 1}, PolygonBspOptions{.max_depth = 1}}) {
@@ -256,26 +257,26 @@ TEST(PolygonBsp, AnswersTheSameWhenALimitLeavesPolygonsInLeaves) {
         Random random(2);
         const Box3 box = box_of(mesh, 0.2);
         for (int i = 0; i < 300; ++i) {
-            const Vec3d p = place_in(box, random);
-            EXPECT_EQ(tree.solid(p), winding_number(mesh, p) != 0);
-            const Ray ray{p, normalized(to_float(place_in(box, random) - p))};
-            EXPECT_EQ(tree.cast_ray(ray), cast_ray_at_all(mesh, ray));
+            const Vec3d p = point_in(box, random);
+            EXPECT_EQ(tree.is_solid(p), winding_number(mesh, p) != 0);
+            const Ray ray{p, normalized(to_float(point_in(box, random) - p))};
+            EXPECT_EQ(tree.cast_ray(ray), cast_ray_brute_force(mesh, ray));
         }
     }
 }
 
-TEST(PolygonBsp, GivesOpenMeshesTheInsideThatIsSeenFromIt) {
+TEST(PolygonBsp, GivesOpenMeshesTheInteriorOfTheirWindingNumber) {
     TriangleMesh lidless = concave_l();
     lidless.indices.resize(lidless.indices.size() - 3);  // a hole in the floor
     const PolygonBsp tree = built(lidless);
     EXPECT_FALSE(tree.stats().closed);
-    EXPECT_TRUE(tree.solid({0.5, 0.5, 0.9}));
-    EXPECT_FALSE(tree.solid({0.5, 0.5, 1.1}));
-    EXPECT_FALSE(tree.solid({1.5, 1.5, 0.5}));
-    EXPECT_FALSE(tree.solid({0.5, 0.5, -5}));
+    EXPECT_TRUE(tree.is_solid({0.5, 0.5, 0.9}));
+    EXPECT_FALSE(tree.is_solid({0.5, 0.5, 1.1}));
+    EXPECT_FALSE(tree.is_solid({1.5, 1.5, 0.5}));
+    EXPECT_FALSE(tree.is_solid({0.5, 0.5, -5}));
 }
 
-TEST(PolygonBsp, WindsAroundPlacesAsAllSolidAnglesSay) {
+TEST(PolygonBsp, HasTheWindingNumberOfAllSolidAngles) {
     auto meshes = closed_meshes();
     for (Named& one : given_meshes()) meshes.push_back(std::move(one));
     TriangleMesh half = triangles(Sphere{1}, 12);
@@ -283,11 +284,11 @@ TEST(PolygonBsp, WindsAroundPlacesAsAllSolidAnglesSay) {
     meshes.push_back({"half a sphere", half});
     for (const Named& one : meshes) {
         const PolygonBsp tree = built(one.mesh);
-        if (one.mesh.indices.size() == 3) continue;  // flat: every place is half around it
+        if (one.mesh.indices.size() == 3) continue;  // flat: winding numbers are ambiguous
         Random random(17);
         const Box3 box = box_of(one.mesh, 0.2);
         for (int i = 0; i < 300; ++i) {
-            const Vec3d p = place_in(box, random);
+            const Vec3d p = point_in(box, random);
             EXPECT_EQ(tree.winding(p), winding_number(one.mesh, p)) << one.name;
         }
     }
@@ -306,25 +307,26 @@ TEST(PolygonBsp, IsTheSameTreeForAnyNumberOfThreads) {
     }
 }
 
-TEST(PolygonBsp, DropsTrianglesWithoutSurface) {
+TEST(PolygonBsp, DropsTrianglesWithoutArea) {
     TriangleMesh mesh = triangles(Box{{1, 1, 1}});
     mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});
     const PolygonBsp tree = built(mesh);
     EXPECT_EQ(tree.stats().dropped, 2u);
-    EXPECT_TRUE(tree.solid({0, 0, 0}));
+    EXPECT_TRUE(tree.is_solid({0, 0, 0}));
     EXPECT_TRUE(tree.stats().closed);
 }
 
-TEST(PolygonBsp, RefusesWhatIsNoMesh) {
+TEST(PolygonBsp, RejectsInvalidMeshes) {
     const TriangleMesh cube = triangles(Box{{1, 1, 1}});
     const auto refusal = [](const TriangleMesh& mesh, const PolygonBspOptions& options = {}) {
         const auto tree = PolygonBsp::build(mesh, options);
         return tree ? std::string("built") : tree.error().text();
     };
-    EXPECT_EQ(refusal({}), "indices: found 0 triangles, none with a surface, need one");
-    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0, 0}}), "indices: found 1 triangles, none with a surface, need one");
-    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0}}), "indices: found 2, need a multiple of three");
-    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0, 1}}), "indices[2]: found 1, need one of the 1 corners");
+    EXPECT_EQ(refusal({}), "indices: found 0 triangles without area; expected at least one with area");
+    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0, 0}}),
+              "indices: found 1 triangles without area; expected at least one with area");
+    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0}}), "indices: found 2 indices; expected a multiple of three");
+    EXPECT_EQ(refusal({{{0, 0, 0}}, {0, 0, 1}}), "indices[2]: found corner 1; expected less than 1");
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e9f}) {
         TriangleMesh mesh = cube;
         mesh.positions[3].y = bad;
@@ -337,19 +339,19 @@ TEST(PolygonBsp, RefusesWhatIsNoMesh) {
     EXPECT_EQ(PolygonBsp::build(cube, {.max_depth = 5000}).status(), Status::BadArgument);
 }
 
-TEST(PolygonBsp, AnswersOddQuestions) {
+TEST(PolygonBsp, HandlesExtremePointsAndRays) {
     const PolygonBsp tree = built(triangles(Box{{1, 1, 1}}));
     const double nan = std::numeric_limits<double>::quiet_NaN(), far = 1e300;
-    EXPECT_FALSE(tree.solid({nan, 0, 0}));
-    EXPECT_FALSE(tree.solid({far, far, far}));
+    EXPECT_FALSE(tree.is_solid({nan, 0, 0}));
+    EXPECT_FALSE(tree.is_solid({far, far, far}));
     EXPECT_FALSE(tree.cast_ray({{nan, 0, 0}, {1, 0, 0}}));
     EXPECT_FALSE(tree.cast_ray({{0, 0, 0}, {0, 0, 0}}));
     const auto hit = tree.cast_ray({{1000, 0.25, 0.5}, {-1, 0, 0}});
     ASSERT_TRUE(hit);
-    EXPECT_EQ(hit->at, 999);
+    EXPECT_EQ(hit->distance, 999);
 }
 
-TEST(WindingNumber, CountsTurnsOfNestedAndTurnedMeshes) {
+TEST(WindingNumber, CountsNestedAndFlippedMeshes) {
     TriangleMesh nested = triangles(Sphere{3}, 16);
     append(nested, triangles(Sphere{2}, 16));
     append(nested, triangles(Box{{0.5f, 0.5f, 0.5f}}));
@@ -357,18 +359,18 @@ TEST(WindingNumber, CountsTurnsOfNestedAndTurnedMeshes) {
     EXPECT_EQ(winding_number(nested, {1.1, 0.2, 0.3}), 2);
     EXPECT_EQ(winding_number(nested, {0, 2.5, 0}), 1);
     EXPECT_EQ(winding_number(nested, {0, 4, 0}), 0);
-    EXPECT_EQ(winding_number(turned(nested), {0.1, 0.2, 0.3}), -3);
+    EXPECT_EQ(winding_number(flipped(nested), {0.1, 0.2, 0.3}), -3);
 }
 
-TEST(Rim, IsNoneOfClosedMeshesAndTheHoleOfOthers) {
-    for (const Named& one : closed_meshes()) EXPECT_TRUE(rim_of(one.mesh).empty()) << one.name;
+TEST(Boundary, IsEmptyForClosedMeshesAndTheRimOfHoles) {
+    for (const Named& one : closed_meshes()) EXPECT_TRUE(boundary_of(one.mesh).empty()) << one.name;
     TriangleMesh open = triangles(Box{{1, 1, 1}});
     open.indices.resize(open.indices.size() - 3);
-    EXPECT_EQ(rim_of(open).size(), 3u);
+    EXPECT_EQ(boundary_of(open).size(), 3u);
     append(open, TriangleMesh(open));
-    const auto twice = rim_of(open);
+    const auto twice = boundary_of(open);
     ASSERT_EQ(twice.size(), 3u);
-    EXPECT_EQ(twice[0].times, 2);
+    EXPECT_EQ(twice[0].count, 2);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Closed meshes of known shape.
+/// Closed meshes of known shape for tests.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -8,20 +8,20 @@
 
 namespace fase::level {
 
-/// Adds another mesh, moved.
-inline void append(TriangleMesh& mesh, const TriangleMesh& other, Vec3 move = {}) {
+/// Appends another mesh, translated.
+inline void append(TriangleMesh& mesh, const TriangleMesh& other, Vec3 translation = {}) {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const Vec3& p : other.positions) mesh.positions.push_back(p + move);
+    for (const Vec3& p : other.positions) mesh.positions.push_back(p + translation);
     for (const std::uint32_t i : other.indices) mesh.indices.push_back(base + i);
 }
 
-/// Turned inside out.
-inline TriangleMesh turned(TriangleMesh mesh) {
+/// Returns the mesh with flipped triangles: inside out.
+inline TriangleMesh flipped(TriangleMesh mesh) {
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t], mesh.indices[t + 1]);
     return mesh;
 }
 
-/// A torus around the z axis.
+/// Returns a torus around the z axis.
 inline TriangleMesh torus(float radius, float tube, std::uint32_t around, std::uint32_t across) {
     TriangleMesh mesh;
     const auto angle = [](std::uint32_t i, std::uint32_t n) { return 6.28318530718 * i / n; };
@@ -39,7 +39,7 @@ inline TriangleMesh torus(float radius, float tube, std::uint32_t around, std::u
     return mesh;
 }
 
-/// An L of height 1: the square of side 2 without the quarter beyond (1, 1).
+/// Returns an L of height 1: the square of side 2 without the quarter beyond (1, 1).
 inline TriangleMesh concave_l() {
     TriangleMesh mesh;
     constexpr float plan[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};

@@ -1,3 +1,4 @@
+/// Reads and writes WAD files, and reads maps from them.
 #include "fase/level/wad.hpp"
 
 #include <gtest/gtest.h>
@@ -46,9 +47,9 @@ Wad room() {
     return wad;
 }
 
-TEST(Wad, GivesBackTheBytesItWasMadeFrom) {
+TEST(Wad, RoundTripsThroughBytes) {
     const Wad wad = room();
-    const auto bytes = wad.packed();
+    const auto bytes = wad.to_bytes();
     ASSERT_TRUE(bytes);
     const auto again = Wad::parse("room", *bytes);
     ASSERT_TRUE(again) << again.error().text();
@@ -57,10 +58,10 @@ TEST(Wad, GivesBackTheBytesItWasMadeFrom) {
         EXPECT_EQ(again->lumps[i].name, wad.lumps[i].name);
         EXPECT_EQ(again->lumps[i].bytes, wad.lumps[i].bytes);
     }
-    EXPECT_EQ(*again->packed(), *bytes);
+    EXPECT_EQ(*again->to_bytes(), *bytes);
 }
 
-TEST(Wad, ReadsEveryFreedoomMapGiven) {
+TEST(Wad, ReadsAllGivenFreedoomMaps) {
     const auto files = freedoom();
     if (files.empty()) GTEST_SKIP() << "skipped: no levels in " << FASE_SHARED_DATA;
     for (const auto& file : files) {
@@ -75,7 +76,7 @@ TEST(Wad, ReadsEveryFreedoomMapGiven) {
     }
 }
 
-TEST(Wad, ReadsARoom) {
+TEST(Wad, ReadsASquareRoom) {
     const auto map = read_map("room", room(), "map01");
     ASSERT_TRUE(map) << map.error().text();
     EXPECT_EQ(map->lines.size(), 4u);
@@ -86,7 +87,7 @@ TEST(Wad, ReadsARoom) {
     EXPECT_NE(none.error().text().find("MAP01"), std::string::npos);
 }
 
-TEST(Wad, NamesTheEntryThatPointsNowhere) {
+TEST(Wad, NamesTheEntryWithAnInvalidIndex) {
     const auto refused = [](std::string_view lump, std::size_t byte, int value) {
         Wad wad = room();
         auto& bytes = wad.lumps[*wad.find_in_map(0, lump)].bytes;
@@ -95,22 +96,23 @@ TEST(Wad, NamesTheEntryThatPointsNowhere) {
         const auto map = read_map("room", wad, "MAP01");
         return map ? std::string("read") : map.error().text();
     };
-    EXPECT_EQ(refused("LINEDEFS", 14, 9), "room: MAP01 LINEDEFS[1]: found vertex 9, need one of the 4");
+    EXPECT_EQ(refused("LINEDEFS", 14, 9), "room: MAP01 LINEDEFS[1]: found vertex 9; expected one of the 4");
     EXPECT_EQ(refused("LINEDEFS", 14, 2),
-              "room: MAP01 LINEDEFS[1]: found a line of zero length, need two corners that differ");
-    EXPECT_EQ(refused("LINEDEFS", 24, 1), "room: MAP01 LINEDEFS[1]: found side 1, need one of the 1");
-    EXPECT_EQ(refused("LINEDEFS", 24, 0xffff), "room: MAP01 LINEDEFS[1]: found a line without a right side, need one");
-    EXPECT_EQ(refused("SIDEDEFS", 28, 7), "room: MAP01 SIDEDEFS[0]: found sector 7, need one of the 1");
+              "room: MAP01 LINEDEFS[1]: found a line of zero length; expected two different corners");
+    EXPECT_EQ(refused("LINEDEFS", 24, 1), "room: MAP01 LINEDEFS[1]: found side 1; expected one of the 1");
+    EXPECT_EQ(refused("LINEDEFS", 24, 0xffff),
+              "room: MAP01 LINEDEFS[1]: found a line without a right side; expected one");
+    EXPECT_EQ(refused("SIDEDEFS", 28, 7), "room: MAP01 SIDEDEFS[0]: found sector 7; expected one of the 1");
 }
 
-TEST(Wad, RefusesEveryTruncation) {
-    const auto bytes = *room().packed();
+TEST(Wad, RejectsEveryTruncation) {
+    const auto bytes = *room().to_bytes();
     for (std::size_t size = 0; size < bytes.size(); ++size)
         EXPECT_FALSE(Wad::parse("room", std::span(bytes).first(size))) << size;
 }
 
 TEST(Wad, SurvivesEveryFlippedBit) {
-    const auto bytes = *room().packed();
+    const auto bytes = *room().to_bytes();
     for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
         auto flipped = bytes;
         flipped[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
@@ -122,8 +124,8 @@ TEST(Wad, SurvivesEveryFlippedBit) {
     }
 }
 
-TEST(Wad, SaysWhereTheDirectoryOrALumpLiesOutside) {
-    auto bytes = *room().packed();
+TEST(Wad, ReportsADirectoryOrLumpOutsideTheFile) {
+    auto bytes = *room().to_bytes();
     const auto with = [&](std::size_t at, std::uint32_t value) {
         auto changed = bytes;
         for (std::size_t i = 0; i < 4; ++i) changed[at + i] = static_cast<std::byte>(value >> 8 * i & 0xff);
@@ -131,7 +133,7 @@ TEST(Wad, SaysWhereTheDirectoryOrALumpLiesOutside) {
         return wad ? std::string() : wad.error().text();
     };
     EXPECT_NE(with(4, 0xffffffff).find("room:4: found -1 lumps"), std::string::npos);
-    EXPECT_NE(with(4, 0x7fffffff).find("need it inside the file"), std::string::npos);
+    EXPECT_NE(with(4, 0x7fffffff).find("expected it inside the file"), std::string::npos);
     EXPECT_NE(with(8, 0x7ffffff0).find("room:8: found a directory"), std::string::npos);
     const std::size_t directory = read_u32(bytes, 8);
     EXPECT_NE(with(directory + 2 * 16 + 4, 0xffffffff).find("of -1 bytes"), std::string::npos);

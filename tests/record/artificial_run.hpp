@@ -1,5 +1,6 @@
 #pragma once
-/// A made-up run with everything that a recording can hold: bodies that fly, spin, sleep, wake, jump, come and go.
+/// An artificial run with everything that a recording can contain: bodies that move, rotate, sleep, wake, jump, and are
+/// added and removed.
 #include <unistd.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@
 
 namespace fase::record {
 
-/// A folder of its own that goes with the object.
+/// A temporary folder that is removed with the object.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
@@ -36,22 +37,23 @@ private:
     std::string path_;
 };
 
+/// Returns the content of a file.
 inline std::string read_file(const std::string& name) {
     std::ifstream in(name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }
-/// A new file of that name: some file systems write an old one that is cut to nothing through to the disk.
+/// Writes a file; removes an existing one first, because some file systems flush a truncated file to the disk.
 inline void write_file(const std::string& name, const std::string& bytes) {
     std::filesystem::remove(name);
     std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// A repeatable number in 0 … 1 for three keys.
+/// Returns a reproducible number in 0 … 1 for three keys.
 inline double noise(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
     return double(mix_bits(mix_bits(mix_bits(a) + b) + c) >> 11) * 0x1p-53;
 }
 
-/// The run's tables and frames; frame(k) is the same for the same k.
+/// The tables and frames of a run; frame(k) depends only on k.
 class ArtificialRun {
 public:
     explicit ArtificialRun(std::uint32_t bodies, double origin = 0) : bodies_(bodies), origin_(origin) {}
@@ -65,7 +67,7 @@ public:
         head.counter_names = {"bodies", "awake", "contacts"};
         return head;
     }
-    /// Adds all rows that the frames name.
+    /// Adds all rows that the frames refer to.
     Result<void> add_tables(RecordingWriter& writer) const {
         const RecordedShape box{ShapeKind::Box, {0.5f, 0.5f, 0.5f}, {}, {}};
         const RecordedShape tetrahedron{ShapeKind::Hull,
@@ -112,7 +114,7 @@ public:
         frame.stage_ms = {float(k) * 0.125f, float(k) * 0.0625f};
         frame.counters = {bodies_, k, std::uint64_t(1) << 40};
         for (std::uint32_t i = 0; i < bodies_; ++i) {
-            if (!lives(i, k)) continue;
+            if (!exists(i, k)) continue;
             frame.bodies.push_back(body_at(i, k));
         }
         if (bodies_ >= 4) add_events(frame, k);
@@ -120,10 +122,10 @@ public:
     }
 
 private:
-    [[nodiscard]] static bool lives(std::uint32_t i, std::uint64_t k) {
-        if (i % 11 == 5) return k >= 30;          // comes
-        if (i % 13 == 6) return k < 40;           // goes
-        if (i % 17 == 7) return k / 25 % 2 == 0;  // comes and goes
+    [[nodiscard]] static bool exists(std::uint32_t i, std::uint64_t k) {
+        if (i % 11 == 5) return k >= 30;          // is added
+        if (i % 13 == 6) return k < 40;           // is removed
+        if (i % 17 == 7) return k / 25 % 2 == 0;  // is added and removed again
         return true;
     }
     [[nodiscard]] BodyFrame body_at(std::uint32_t i, std::uint64_t k) const {
@@ -132,7 +134,7 @@ private:
         body.kind = static_cast<std::uint8_t>(i == 0 ? 0 : 2);
         const bool rests = i == 0 || (i % 5 == 2 && k / 20 % 2 == 1);
         body.awake = !rests;
-        body.broken = i % 29 == 28 && k > 50;
+        body.quarantined = i % 29 == 28 && k > 50;
         body.island = i == 0 ? 0 : 1 + i - i % (1 + static_cast<std::uint32_t>(k / 10));
         const double t = rests && i != 0 ? double(k / 20 * 20) / 60 : i == 0 ? 0 : double(k) / 60;
         const double jump = i % 19 == 4 ? 1000 * std::floor(double(k) / 15) : 0;
@@ -143,20 +145,24 @@ private:
         return body;
     }
     void add_events(Frame& frame, std::uint64_t k) const {
-        const auto any = [&](std::uint64_t j, std::uint64_t c) {
+        const auto any_collider = [&](std::uint64_t j, std::uint64_t c) {
             return static_cast<std::uint32_t>(noise(k, j, c) * bodies_);
         };
         for (std::uint64_t j = 0; j < k % 4; ++j) {
-            frame.contacts_begun.push_back({any(j, 1), any(j, 2)});
-            frame.contacts_ended.push_back({any(j, 3), any(j, 4)});
-            frame.hits.push_back(
-                {any(j, 5), any(j, 6), {origin_ + noise(k, j, 7), 2, -origin_}, {0, 1, 0}, 3.5f, 0.125f});
+            frame.contacts_begun.push_back({any_collider(j, 1), any_collider(j, 2)});
+            frame.contacts_ended.push_back({any_collider(j, 3), any_collider(j, 4)});
+            frame.hits.push_back({any_collider(j, 5),
+                                  any_collider(j, 6),
+                                  {origin_ + noise(k, j, 7), 2, -origin_},
+                                  {0, 1, 0},
+                                  3.5f,
+                                  0.125f});
         }
-        if (k % 8 == 1) frame.sensors_begun.push_back({3, any(0, 8)});
-        if (k % 8 == 5) frame.sensors_ended.push_back({3, any(0, 9)});
+        if (k % 8 == 1) frame.sensors_begun.push_back({3, any_collider(0, 8)});
+        if (k % 8 == 5) frame.sensors_ended.push_back({3, any_collider(0, 9)});
         ContactFrame contact;
-        contact.a = any(0, 10);
-        contact.b = any(0, 11);
+        contact.a = any_collider(0, 10);
+        contact.b = any_collider(0, 11);
         contact.normal = {0, 0, 1};
         contact.count = static_cast<int>(k % 5);
         for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
@@ -170,13 +176,13 @@ private:
     double origin_;
 };
 
-/// Degrees between two rotations.
+/// Returns the angle between two rotations in degrees.
 inline double degrees_between(Quat a, Quat b) {
     const Quatd d = conjugate(to_double(a)) * to_double(b);
     return 2 * std::atan2(length(d.vector()), std::abs(d.w)) * 180 / 3.14159265358979323846;
 }
 
-/// Writes frames 0 … count - 1.
+/// Records the frames 0 … count - 1 of a run.
 inline Result<void> record_run(const std::string& name, const ArtificialRun& run, std::uint64_t count,
                                const RecorderOptions& options = {}) {
     Result<RecordingWriter> writer = RecordingWriter::create(name, ArtificialRun::head(), options);

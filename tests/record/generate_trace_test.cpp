@@ -1,4 +1,4 @@
-/// Traces made by rule: each kind is what its name says, and the same everywhere.
+/// Tests generated traces: each kind has its described properties and the same bytes on every machine.
 #include "fase/record/generate_trace.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 namespace fase::record {
 namespace {
 
-struct Made {
-    MadeTrace counts;
+struct GeneratedFrames {
+    GeneratedTrace counts;
     std::vector<std::uint8_t> flags;
     std::vector<std::vector<Aabb>> frames;
     [[nodiscard]] std::size_t moved_in(std::size_t frame) const {
@@ -32,19 +32,19 @@ struct Made {
     }
 };
 
-Made make(std::string_view kind, std::size_t count, std::uint32_t frames, std::uint64_t seed = 1) {
+GeneratedFrames make(std::string_view kind, std::size_t count, std::uint32_t frames, std::uint64_t seed = 1) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
-    Made made;
+    GeneratedFrames generated;
     const auto counts = generate_trace(kind, {count, frames, seed}, name);
     EXPECT_TRUE(counts) << counts.error().text();
     auto trace = TraceReader::open(name);
     EXPECT_TRUE(trace) << trace.error().text();
-    made.counts = *counts;
-    made.flags.assign(trace->flags().begin(), trace->flags().end());
-    for (std::vector<Aabb> boxes; *trace->next(boxes);) made.frames.push_back(boxes);
-    EXPECT_EQ(made.frames.size(), trace->frames());
-    return made;
+    generated.counts = *counts;
+    generated.flags.assign(trace->flags().begin(), trace->flags().end());
+    for (std::vector<Aabb> boxes; *trace->next(boxes);) generated.frames.push_back(boxes);
+    EXPECT_EQ(generated.frames.size(), trace->frames());
+    return generated;
 }
 
 std::uint64_t hash_of(std::string_view kind, std::uint64_t seed) {
@@ -57,7 +57,7 @@ std::uint64_t hash_of(std::string_view kind, std::uint64_t seed) {
 }
 
 TEST(GenerateTrace, GivesTheSameBytesOnEveryMachine) {
-    // A new rule changes its number; another compiler must not.
+    // A changed rule changes its hash; a different compiler must not.
     const std::map<std::string, std::uint64_t> golden{
         {"uniform", 0x727fb470f96a3573},    {"clusters", 0x53806783f7298d4f}, {"flat", 0xc091e7333e04e5e6},
         {"mixed", 0x2886baec89dc1550},      {"static", 0x81b67ef8bd2f2680},   {"asleep", 0xe6defa4b706d83f7},
@@ -69,85 +69,85 @@ TEST(GenerateTrace, GivesTheSameBytesOnEveryMachine) {
             << kind.name << " 0x" << std::hex << hash;
         EXPECT_EQ(hash_of(kind.name, 1), hash) << kind.name;
         if (kind.name != "lattice") {
-            EXPECT_NE(hash_of(kind.name, 2), hash) << kind.name << " has another of it";
+            EXPECT_NE(hash_of(kind.name, 2), hash) << kind.name << ": another seed must give another trace";
         }
     }
 }
 
-TEST(GenerateTrace, CountsAndFramesAreWhatIsAskedOrTheKindsOwn) {
+TEST(GenerateTrace, UsesTheRequestedOrDefaultCounts) {
     for (const TraceKind& kind : trace_kinds()) {
         SCOPED_TRACE(kind.name);
         for (const std::size_t count : {1u, 2u, 77u}) {
-            const Made made = make(kind.name, count, 3);
-            EXPECT_EQ(made.flags.size(), count);
-            EXPECT_EQ(made.frames.size(), 3u);
+            const GeneratedFrames generated = make(kind.name, count, 3);
+            EXPECT_EQ(generated.flags.size(), count);
+            EXPECT_EQ(generated.frames.size(), 3u);
         }
         EXPECT_GE(kind.default_count, 1000u);
         EXPECT_GE(kind.default_frames, 30u);
     }
-    const Made made = make("coincident", 0, 1);
-    EXPECT_EQ(made.flags.size(), 4000u);
+    const GeneratedFrames generated = make("coincident", 0, 1);
+    EXPECT_EQ(generated.flags.size(), 4000u);
     EXPECT_EQ(make("lattice", 10, 0).frames.size(), 60u);
 }
 
-TEST(GenerateTrace, RefusesUnknownKindsAndTooMany) {
+TEST(GenerateTrace, RejectsUnknownKindsAndTooManyBoxes) {
     const TemporaryFolder folder;
     const auto unknown = generate_trace("gravel", {}, folder / "t.aabt");
     EXPECT_EQ(unknown.status(), Status::BadArgument);
-    EXPECT_NE(unknown.error().problem.find("need one of uniform, clusters"), std::string::npos);
+    EXPECT_NE(unknown.error().problem.find("expected one of uniform, clusters"), std::string::npos);
     EXPECT_EQ(generate_trace("rain", {.count = 10'000'001}, folder / "t.aabt").status(), Status::BadArgument);
     EXPECT_EQ(generate_trace("rain", {}, folder / "none/t.aabt").status(), Status::Io);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(GenerateTrace, StaticAndAsleepMostlyRest) {
-    const Made fixed = make("static", 2000, 40);
+TEST(GenerateTrace, MostBoxesOfStaticAndAsleepRest) {
+    const GeneratedFrames fixed = make("static", 2000, 40);
     EXPECT_GT(fixed.counts.static_boxes, 1900u);
     EXPECT_LT(fixed.counts.static_boxes, 2000u);
     EXPECT_EQ(fixed.moved_in(20), 2000 - fixed.counts.static_boxes);
-    const Made asleep = make("asleep", 6000, 60);
+    const GeneratedFrames asleep = make("asleep", 6000, 60);
     EXPECT_GT(asleep.counts.asleep_boxes, 5500u);
     EXPECT_GT(asleep.moved_in(59), asleep.moved_in(1)) << "some wake";
     EXPECT_LT(asleep.moved_in(59), 600u);
 }
 
-TEST(GenerateTrace, ThingsFallBounceAndComeToRest) {
-    const Made pile = make("pile", 500, 240);
+TEST(GenerateTrace, BoxesFallBounceAndComeToRest) {
+    const GeneratedFrames pile = make("pile", 500, 240);
     EXPECT_EQ(pile.moved_in(1), 500u);
-    EXPECT_LT(pile.moved_in(239), 50u) << "nearly all lie";
+    EXPECT_LT(pile.moved_in(239), 50u) << "nearly all rest";
     EXPECT_GT(pile.pairs_in(239), 2 * pile.pairs_in(0) / 3);
-    const Made explosion = make("explosion", 500, 120);
+    const GeneratedFrames explosion = make("explosion", 500, 120);
     EXPECT_GT(explosion.pairs_in(0), 10 * (explosion.pairs_in(119) + 1));
     for (const char* kind : {"flat", "rain", "explosion"}) {
-        const Made made = make(kind, 300, 120);
+        const GeneratedFrames generated = make(kind, 300, 120);
         std::size_t up = 0, down = 0;
-        for (std::size_t f = 1; f < made.frames.size(); ++f)
+        for (std::size_t f = 1; f < generated.frames.size(); ++f)
             for (std::size_t i = 0; i < 300; ++i) {
-                up += made.frames[f][i].lo.y > made.frames[f - 1][i].lo.y ? 1 : 0;
-                down += made.frames[f][i].lo.y < made.frames[f - 1][i].lo.y ? 1 : 0;
-                ASSERT_GT(made.frames[f][i].lo.y, -0.01f) << kind << ": none falls through the floor";
+                up += generated.frames[f][i].lo.y > generated.frames[f - 1][i].lo.y ? 1 : 0;
+                down += generated.frames[f][i].lo.y < generated.frames[f - 1][i].lo.y ? 1 : 0;
+                ASSERT_GT(generated.frames[f][i].lo.y, -0.01f) << kind << ": none falls through the floor";
             }
         EXPECT_GT(up, 100u) << kind;
         EXPECT_GT(down, 100u) << kind;
     }
 }
 
-TEST(GenerateTrace, KindsAreHardInTheirOwnWays) {
-    const Made coincident = make("coincident", 400, 10);
+TEST(GenerateTrace, KindsHaveTheirDescribedProperties) {
+    const GeneratedFrames coincident = make("coincident", 400, 10);
     for (const auto& frame : coincident.frames)
         for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(frame[i], frame[0]);
-    const Made lattice = make("lattice", 1000, 17);
+    const GeneratedFrames lattice = make("lattice", 1000, 17);
     EXPECT_EQ(lattice.frames[16], lattice.frames[0]) << "out and back";
-    EXPECT_GT(lattice.pairs_in(0), 10000u) << "each touches 26 others, but at the faces";
+    EXPECT_GT(lattice.pairs_in(0), 10000u) << "each touches 26 others, except at the faces";
     for (const Aabb& box : lattice.frames[3])
         ASSERT_EQ(box.lo.x * 4, static_cast<float>(static_cast<int>(box.lo.x * 4)));
-    const Made mixed = make("mixed", 4000, 1);
-    float least = 1e9f, largest = 0;
+    const GeneratedFrames mixed = make("mixed", 4000, 1);
+    float smallest = 1e9f, largest = 0;
     for (const Aabb& box : mixed.frames[0]) {
-        least = std::min(least, extent(box).x);
+        smallest = std::min(smallest, extent(box).x);
         largest = std::max(largest, extent(box).x);
     }
-    EXPECT_GT(largest, 200 * least);
+    EXPECT_GT(largest, 200 * smallest);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// The exported animation: valid as a file, and where the bodies were.
+/// Tests the exported animation: the file is valid, and the bodies are where they were.
 #include "fase/record/glb_export.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t at) {
     return value;
 }
 
-/// The document and the binary part, after checks of the container.
+/// The JSON document and the binary part; the constructor checks the container.
 struct Container {
     json document;
     std::vector<std::byte> binary;
@@ -114,7 +114,7 @@ TEST(GlbExport, IsAValidFile) {
             }
         }
     }
-    EXPECT_LE(meshes.size(), 40u);  // two shapes in few colours, not one mesh a body
+    EXPECT_LE(meshes.size(), 40u);  // two shapes in few colours, not one mesh per body
     const json& animation = glb.document["animations"][0];
     for (const json& sampler : animation["samplers"]) {
         const std::vector<float> times = glb.floats(sampler["input"]);
@@ -132,7 +132,7 @@ TEST(GlbExport, IsAValidFile) {
     }
 }
 
-TEST(GlbExport, IsReadByAnotherProgram) {
+TEST(GlbExport, IsReadByTinyGltf) {
     const TemporaryFolder folder;
     const std::vector<std::byte> glb = exported(folder / "run", ArtificialRun(60), 90);
     tinygltf::TinyGLTF reader;
@@ -151,7 +151,7 @@ TEST(GlbExport, IsReadByAnotherProgram) {
     EXPECT_GE(model.meshes.size(), 2u);
 }
 
-/// The value of a channel at a time, as a glTF player finds it; the node's own without a channel.
+/// Evaluates channels at a time as a glTF player does; without a channel, uses the value of the node.
 class Playback {
 public:
     explicit Playback(const Container& glb) : glb_(glb) {
@@ -168,25 +168,25 @@ public:
             const json& t = glb_.document["nodes"][node]["translation"];
             return {t[0], t[1], t[2]};
         }
-        const auto [k, share] = place(found->second.times, time);
+        const auto [k, fraction] = place(found->second.times, time);
         const auto& v = found->second.values;
         const auto at = [&](std::size_t i) { return Vec3d{v[3 * i], v[3 * i + 1], v[3 * i + 2]}; };
-        return at(k) + (at(k + (share > 0 ? 1 : 0)) - at(k)) * share;
+        return at(k) + (at(k + (fraction > 0 ? 1 : 0)) - at(k)) * fraction;
     }
-    /// Radians between the rotation at that time and `wanted`.
-    [[nodiscard]] double rotation_error(std::size_t node, double time, Quat wanted) const {
+    /// Returns the angle in radians between the rotation at that time and `expected`.
+    [[nodiscard]] double rotation_error(std::size_t node, double time, Quat expected) const {
         const auto found = channels_.find({node, "rotation"});
-        const Quatd goal = normalized(to_double(wanted));
+        const Quatd target = normalized(to_double(expected));
         if (found == channels_.end()) {
             const json& n = glb_.document["nodes"][node];
             Quatd q;
             if (n.contains("rotation")) q = {n["rotation"][0], n["rotation"][1], n["rotation"][2], n["rotation"][3]};
-            return distance_between_rotations(q, q, 0, goal);
+            return distance_between_rotations(q, q, 0, target);
         }
-        const auto [k, share] = place(found->second.times, time);
+        const auto [k, fraction] = place(found->second.times, time);
         const auto& v = found->second.values;
         const auto at = [&](std::size_t i) { return Quatd{v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]}; };
-        return distance_between_rotations(at(k), at(k + (share > 0 ? 1 : 0)), share, goal);
+        return distance_between_rotations(at(k), at(k + (fraction > 0 ? 1 : 0)), fraction, target);
     }
     [[nodiscard]] bool is_there(std::size_t node, double time) const {
         const auto found = channels_.find({node, "scale"});
@@ -207,23 +207,23 @@ private:
         while (times[k + 1] < time) ++k;
         return {k, (time - times[k]) / (times[k + 1] - times[k])};
     }
-    static double distance_between_rotations(Quatd a, Quatd b, double share, Quatd goal);
+    static double distance_between_rotations(Quatd a, Quatd b, double fraction, Quatd target);
     const Container& glb_;
     std::map<std::pair<std::size_t, std::string>, Channel> channels_;
 };
 
-/// Interpolated as the specification says (slerp on the shorter way), written anew here as a judge.
-double Playback::distance_between_rotations(Quatd a, Quatd b, double share, Quatd goal) {
+/// Interpolates as the specification says (slerp along the shorter arc); an independent reference implementation.
+double Playback::distance_between_rotations(Quatd a, Quatd b, double fraction, Quatd target) {
     const double d = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
     const double s = d < 0 ? -1 : 1, angle = std::acos(std::min(1.0, std::abs(d)));
-    const double p = angle > 1e-6 ? std::sin((1 - share) * angle) / std::sin(angle) : 1 - share;
-    const double q = (angle > 1e-6 ? std::sin(share * angle) / std::sin(angle) : share) * s;
+    const double p = angle > 1e-6 ? std::sin((1 - fraction) * angle) / std::sin(angle) : 1 - fraction;
+    const double q = (angle > 1e-6 ? std::sin(fraction * angle) / std::sin(angle) : fraction) * s;
     const Quatd at = normalized(Quatd{a.x * p + b.x * q, a.y * p + b.y * q, a.z * p + b.z * q, a.w * p + b.w * q});
-    const Quatd missed = conjugate(at) * goal;
-    return 2 * std::atan2(length(missed.vector()), std::abs(missed.w));
+    const Quatd difference = conjugate(at) * target;
+    return 2 * std::atan2(length(difference.vector()), std::abs(difference.w));
 }
 
-TEST(GlbExport, PlaysWhereTheBodiesWere) {
+TEST(GlbExport, PlaysTheRecordedMotion) {
     const TemporaryFolder folder;
     for (const double origin : {0.0, 1e6}) {
         const ArtificialRun run(60, origin);
@@ -243,7 +243,7 @@ TEST(GlbExport, PlaysWhereTheBodiesWere) {
             for (const BodyFrame& body : frame.bodies) {
                 const std::size_t node = body.row + 1;
                 there.insert(node);
-                if (body.row % 19 == 4) continue;  // jumps a kilometre: is in float where it can be
+                if (body.row % 19 == 4) continue;  // jumps a kilometre, where floats are imprecise
                 worst_metres =
                     std::max(worst_metres, length(playback.translation(node, time) + offset - body.pose.position));
                 worst_degrees =
@@ -254,13 +254,13 @@ TEST(GlbExport, PlaysWhereTheBodiesWere) {
                 EXPECT_EQ(playback.is_there(node, time), there.count(node) == 1);
         }
         EXPECT_GT(seen, 4000u);
-        EXPECT_LT(worst_metres, 0.0015);  // 1 mm by the keys, the rest by quanta
+        EXPECT_LT(worst_metres, 0.0015);  // 1 mm from the keys, the rest from the quanta
         EXPECT_LT(worst_degrees, 0.13);
         EXPECT_GT(worst_metres, 0.0001);
     }
 }
 
-TEST(GlbExport, OfNothingIsAFileToo) {
+TEST(GlbExport, EmptyRecordingGivesAValidFile) {
     const TemporaryFolder folder;
     const std::vector<std::byte> glb = exported(folder / "run", ArtificialRun(0), 0);
     const Container container(glb);

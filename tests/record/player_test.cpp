@@ -1,4 +1,4 @@
-/// Broken files open as far as they are whole, and never harm.
+/// Tests reading: damaged files open up to the damage, and no input causes a crash.
 #include "fase/record/player.hpp"
 
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@
 namespace fase::record {
 namespace {
 
-/// A small recording of several blocks, as bytes, and where each of its chunks ends.
+/// A small recording of several blocks as bytes, with the end of each chunk.
 struct Sample {
     std::string bytes;
     std::vector<std::size_t> ends;
-    std::vector<std::uint64_t> frames_at;  ///< readable frames once the chunk of the same place in `ends` is whole
+    std::vector<std::uint64_t> frames_at;  ///< readable frames if the chunk of the same index in `ends` is complete
 
     explicit Sample(const TemporaryFolder& folder, std::uint32_t bodies = 12, std::uint64_t frames = 20) {
         RecorderOptions options;
@@ -41,14 +41,14 @@ struct Sample {
         }
         EXPECT_EQ(at + 16, bytes.size());
     }
-    [[nodiscard]] std::uint64_t whole_frames(std::size_t good_bytes) const {
+    [[nodiscard]] std::uint64_t complete_frames(std::size_t good_bytes) const {
         std::uint64_t frames = 0;
         for (std::size_t i = 0; i < ends.size() && ends[i] <= good_bytes; ++i) frames = frames_at[i];
         return frames;
     }
 };
 
-/// Opens and reads everything there is. The frames it read; -1: did not open.
+/// Opens a file and reads all frames. Returns their number; -1 if it does not open.
 std::int64_t read_all(const std::string& name, bool* complete = nullptr) {
     Result<Player> player = Player::open(name);
     if (!player) {
@@ -65,7 +65,7 @@ std::int64_t read_all(const std::string& name, bool* complete = nullptr) {
     return static_cast<std::int64_t>((*player).frames());
 }
 
-TEST(Player, OpensAFileCutAtAnyByteUpToItsLastWholeBlock) {
+TEST(Player, OpensATruncatedFileUpToItsLastCompleteBlock) {
     const TemporaryFolder folder;
     const Sample sample(folder);
     const std::string name = folder / "cut";
@@ -76,7 +76,7 @@ TEST(Player, OpensAFileCutAtAnyByteUpToItsLastWholeBlock) {
         if (length < sample.ends[0]) {
             EXPECT_EQ(frames, -1) << length;
         } else {
-            EXPECT_EQ(frames, static_cast<std::int64_t>(sample.whole_frames(length))) << length;
+            EXPECT_EQ(frames, static_cast<std::int64_t>(sample.complete_frames(length))) << length;
             EXPECT_FALSE(complete) << length;
         }
     }
@@ -99,15 +99,15 @@ TEST(Player, OpensAFileWithAnyBitFlippedUpToTheDamage) {
             const std::int64_t frames = read_all(name, &complete);
             if (at < sample.ends[0]) {
                 EXPECT_EQ(frames, -1) << at;
-            } else if (at < sample.bytes.size() - 16) {  // before the tail, which the walk does not need
-                EXPECT_EQ(frames, static_cast<std::int64_t>(sample.whole_frames(at))) << at;
+            } else if (at < sample.bytes.size() - 16) {  // before the tail, which the scan does not need
+                EXPECT_EQ(frames, static_cast<std::int64_t>(sample.complete_frames(at))) << at;
                 EXPECT_FALSE(complete) << at;
             }
         }
     }
 }
 
-/// The sample with one of its chunks unpacked, changed and packed again with a right check sum.
+/// Returns the recording with one chunk unpacked, changed and packed again with a correct checksum.
 std::string with_changed_chunk(const std::string& bytes, std::size_t begin, std::size_t end,
                                const std::function<void(std::vector<std::byte>&)>& change) {
     std::uint32_t type = 0;
@@ -123,11 +123,11 @@ std::string with_changed_chunk(const std::string& bytes, std::size_t begin, std:
            bytes.substr(end);
 }
 
-TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
+TEST(Player, SurvivesWrongNumbersUnderCorrectChecksums) {
     const TemporaryFolder folder;
     const Sample sample(folder, 8, 10);
     const std::string name = folder / "wrong";
-    std::uint64_t refused = 0, tried = 0;
+    std::uint64_t rejected = 0, tried = 0;
     for (std::size_t c = 0; c < sample.ends.size(); ++c) {
         const std::size_t begin = c == 0 ? 16 : sample.ends[c - 1];
         std::size_t raw_size = 0;
@@ -139,7 +139,7 @@ TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
                 ++tried;
                 Result<Player> player = Player::open(name);
                 if (!player) {
-                    ++refused;
+                    ++rejected;
                     continue;
                 }
                 Frame frame;
@@ -153,7 +153,7 @@ TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
                     }
                     for (const HitFrame& hit : frame.hits) ASSERT_LT(hit.b, (*player).tables().colliders.size());
                 }
-                if (!all) ++refused;
+                if (!all) ++rejected;
             }
         }
         for (std::size_t length = 0; length < raw_size; ++length) {
@@ -165,19 +165,19 @@ TEST(Player, SurvivesWrongNumbersUnderRightCheckSums) {
             for (std::uint64_t k = 0; k < (*player).frames(); ++k) (void)(*player).read(k, frame);
         }
     }
-    EXPECT_GT(refused, tried / 20);  // many changes only change values
+    EXPECT_GT(rejected, tried / 20);  // many changes only change values
 }
 
-TEST(Player, RefusesAChunkThatExpandsTooMuch) {
+TEST(Player, RejectsAChunkThatExpandsTooMuch) {
     const TemporaryFolder folder;
     const Sample sample(folder);
-    // Built by hand: 48 MiB of zeros in a few bytes, as a block of frames.
+    // A block of 48 MiB of zeros, which would compress to a few bytes.
     const std::vector<std::byte> zeros(std::size_t(48) << 20);
     ChunkPacker packer;
-    std::vector<std::byte> honest;
-    ASSERT_TRUE(packer.append(frames_chunk, zeros, honest));
-    EXPECT_GT(honest.size(), zeros.size());  // a writer stores it plainly …
-    // … and a reader does not believe one who does not.
+    std::vector<std::byte> uncompressed;
+    ASSERT_TRUE(packer.append(frames_chunk, zeros, uncompressed));
+    EXPECT_GT(uncompressed.size(), zeros.size());  // a writer stores it uncompressed
+    // A reader rejects a compressed chunk that states the same length.
     std::vector<std::byte> packed;
     ASSERT_TRUE(packer.append(frames_chunk, std::span(zeros).first(std::size_t(4) << 20), packed));
     ASSERT_LT(packed.size(), 10000u);
@@ -187,7 +187,7 @@ TEST(Player, RefusesAChunkThatExpandsTooMuch) {
     const std::span<const std::byte> claimed = body.bytes().subspan(8);
     EXPECT_EQ(raw_length({frames_chunk, claimed}).status(), Status::Format);
     EXPECT_EQ(unpack({frames_chunk, claimed}).status(), Status::Format);
-    // A claim within the limits that is not true either way.
+    // A stated length within the limits, but too large or too small.
     body.set_u32(12, (4u << 20) + 1);
     EXPECT_EQ(unpack({frames_chunk, body.bytes().subspan(8)}).status(), Status::Format);
     body.set_u32(12, (4u << 20) - 1);
@@ -204,10 +204,10 @@ TEST(Player, NamesTheVersionOfANewerFile) {
     const Result<Player> player = Player::open(folder / "newer");
     ASSERT_FALSE(player);
     EXPECT_EQ(player.status(), Status::Format);
-    EXPECT_NE(player.error().text().find("found version 7, this program reads 1"), std::string::npos);
+    EXPECT_NE(player.error().text().find("found version 7; this program reads 1"), std::string::npos);
 }
 
-TEST(Player, SkipsChunksThatItDoesNotKnow) {
+TEST(Player, SkipsChunksOfUnknownType) {
     const TemporaryFolder folder;
     const Sample sample(folder);
     ChunkPacker packer;
@@ -219,7 +219,7 @@ TEST(Player, SkipsChunksThatItDoesNotKnow) {
     EXPECT_EQ(read_all(folder / "news"), 20);
 }
 
-TEST(Player, RefusesWhatIsNoFile) {
+TEST(Player, RejectsInputThatIsNotARecording) {
     const TemporaryFolder folder;
     EXPECT_EQ(Player::open(folder / "nothing").status(), Status::Io);
     EXPECT_EQ(Player::open(folder.path()).status(), Status::Io);
@@ -232,7 +232,7 @@ TEST(Player, RefusesWhatIsNoFile) {
     EXPECT_EQ(Player::open(folder / "empty").status(), Status::Format);
 }
 
-TEST(Player, LivesOnWhenTheFileShrinksOrChanges) {
+TEST(Player, ReportsAnErrorWhenTheFileShrinksOrChanges) {
     const TemporaryFolder folder;
     const Sample sample(folder);
     const std::string name = folder / "shrinking";
@@ -244,7 +244,7 @@ TEST(Player, LivesOnWhenTheFileShrinksOrChanges) {
     EXPECT_FALSE((*player).frame(19));
     std::string bytes = sample.bytes;
     std::fill(bytes.begin() + 100, bytes.end(), 'x');
-    const auto overwrite = [&](const std::string& with) {  // the same file, which write_file() would make anew
+    const auto overwrite = [&](const std::string& with) {  // in place; write_file() would create a new file
         std::fstream(name, std::ios::binary | std::ios::in | std::ios::out)
             .write(with.data(), static_cast<std::streamsize>(with.size()));
     };
@@ -255,7 +255,7 @@ TEST(Player, LivesOnWhenTheFileShrinksOrChanges) {
     EXPECT_TRUE((*player).frame(19));
 }
 
-TEST(Index, NamesEveryChunkAndItsFrames) {
+TEST(Index, ListsEveryChunkAndItsFrames) {
     const TemporaryFolder folder;
     const Sample sample(folder);
     std::uint64_t index_at = 0;
@@ -278,7 +278,7 @@ TEST(Index, NamesEveryChunkAndItsFrames) {
         at = sample.ends[i];
     }
     EXPECT_FALSE(in.failed());
-    EXPECT_EQ(in.left(), 0u);
+    EXPECT_EQ(in.remaining(), 0u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// A recorded world is the world: poses, sleep, islands, events, contacts, and bodies that come and go.
+/// Tests that a recording matches the world: poses, sleep, islands, events, contacts, added and removed bodies.
 #include "fase/record/recorder.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace fase::record {
 namespace {
 
-/// Ground, a tower, a ball that hits it, a sensor.
+/// A scene with ground, a tower, a ball that hits it, and a sensor.
 struct Scene {
     World world = std::move(*World::create());
     BodyId ground, ball, zone;
@@ -31,32 +31,32 @@ struct Scene {
     }
 };
 
-/// What a frame must hold, taken from the world itself.
-struct Seen {
+/// The expected content of a frame, read from the world.
+struct Expected {
     std::vector<BodyState> bodies;
     Events events;
     StepReport report;
     std::vector<ContactState> contacts;
 };
-Seen look_at(const World& world) {
-    Seen seen;
-    world.read_bodies(seen.bodies);
-    seen.events = world.events();
-    seen.report = world.last_report();
-    world.read_contacts(seen.contacts);
-    std::erase_if(seen.contacts, [](const ContactState& contact) { return contact.sensor; });
-    return seen;
+Expected expected_of(const World& world) {
+    Expected expected;
+    world.read_bodies(expected.bodies);
+    expected.events = world.events();
+    expected.report = world.last_report();
+    world.read_contacts(expected.contacts);
+    std::erase_if(expected.contacts, [](const ContactState& contact) { return contact.sensor; });
+    return expected;
 }
 
 std::uint64_t key(std::uint32_t index, std::uint16_t generation) { return std::uint64_t(index) << 16 | generation; }
 
-void expect_same(const Frame& frame, const Seen& seen, const Tables& tables) {
+void expect_same(const Frame& frame, const Expected& expected, const Tables& tables) {
     std::map<std::uint64_t, const BodyFrame*> by_id;
     for (const BodyFrame& body : frame.bodies) {
         by_id[key(tables.bodies[body.row].index, tables.bodies[body.row].generation)] = &body;
     }
-    ASSERT_EQ(by_id.size(), seen.bodies.size());
-    for (const BodyState& state : seen.bodies) {
+    ASSERT_EQ(by_id.size(), expected.bodies.size());
+    for (const BodyState& state : expected.bodies) {
         const auto found = by_id.find(key(state.id.index, state.id.generation));
         ASSERT_NE(found, by_id.end());
         const BodyFrame& body = *found->second;
@@ -74,23 +74,24 @@ void expect_same(const Frame& frame, const Seen& seen, const Tables& tables) {
             EXPECT_EQ(tables.colliders[pairs[i].b].index, (events[i].*b).index);
         }
     };
-    expect_pairs(frame.contacts_begun, seen.events.contacts_begun, &ContactEvent::a, &ContactEvent::b);
-    expect_pairs(frame.sensors_begun, seen.events.sensors_begun, &SensorEvent::sensor, &SensorEvent::visitor);
-    expect_pairs(frame.sensors_ended, seen.events.sensors_ended, &SensorEvent::sensor, &SensorEvent::visitor);
-    expect_pairs(frame.hits, seen.events.hits, &HitEvent::a, &HitEvent::b);
-    for (std::size_t i = 0; i < frame.hits.size(); ++i) EXPECT_EQ(frame.hits[i].impulse, seen.events.hits[i].impulse);
-    ASSERT_EQ(frame.contacts.size(), seen.contacts.size());
+    expect_pairs(frame.contacts_begun, expected.events.contacts_begun, &ContactEvent::a, &ContactEvent::b);
+    expect_pairs(frame.sensors_begun, expected.events.sensors_begun, &SensorEvent::sensor, &SensorEvent::visitor);
+    expect_pairs(frame.sensors_ended, expected.events.sensors_ended, &SensorEvent::sensor, &SensorEvent::visitor);
+    expect_pairs(frame.hits, expected.events.hits, &HitEvent::a, &HitEvent::b);
+    for (std::size_t i = 0; i < frame.hits.size(); ++i)
+        EXPECT_EQ(frame.hits[i].impulse, expected.events.hits[i].impulse);
+    ASSERT_EQ(frame.contacts.size(), expected.contacts.size());
     for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
-        EXPECT_EQ(frame.contacts[i].count, seen.contacts[i].count);
-        EXPECT_EQ(frame.contacts[i].normal, seen.contacts[i].normal);
-        EXPECT_EQ(frame.contacts[i].separations[0], seen.contacts[i].separations[0]);
+        EXPECT_EQ(frame.contacts[i].count, expected.contacts[i].count);
+        EXPECT_EQ(frame.contacts[i].normal, expected.contacts[i].normal);
+        EXPECT_EQ(frame.contacts[i].separations[0], expected.contacts[i].separations[0]);
     }
-    EXPECT_EQ(frame.step, seen.report.step);
-    EXPECT_EQ(frame.total_ms, static_cast<float>(seen.report.total_ms));
-    EXPECT_EQ(frame.counters[0], seen.report.bodies);
+    EXPECT_EQ(frame.step, expected.report.step);
+    EXPECT_EQ(frame.total_ms, static_cast<float>(expected.report.total_ms));
+    EXPECT_EQ(frame.counters[0], expected.report.bodies);
 }
 
-TEST(Recorder, RecordsWhatTheWorldDid) {
+TEST(Recorder, FramesMatchTheWorld) {
     const TemporaryFolder folder;
     Scene scene;
     RecordingHead head;
@@ -101,7 +102,7 @@ TEST(Recorder, RecordsWhatTheWorldDid) {
     options.contacts = true;
     Result<Recorder> recorder = Recorder::create(folder / "run.faserec", scene.world, head, options);
     ASSERT_TRUE(recorder) << recorder.error().text();
-    std::vector<Seen> seen;
+    std::vector<Expected> expected;
     const std::vector<Vec3> corners{{-0.5f, -0.5f, -0.5f}, {0.5f, -0.5f, -0.5f}, {0, -0.5f, 0.5f}, {0, 0.6f, 0}};
     for (int k = 0; k < 300; ++k) {
         if (k != 0) {
@@ -110,14 +111,14 @@ TEST(Recorder, RecordsWhatTheWorldDid) {
         if (k == 40) {
             ASSERT_TRUE(scene.world.remove_body(scene.boxes[4]));
         }
-        if (k == 41) {  // takes its slot
+        if (k == 41) {  // reuses its slot
             ASSERT_TRUE(scene.world.add_body({.position = {3, 8, 0}, .user = 999}, *build_convex_hull(corners)));
         }
         if (k == 50) {
             ASSERT_TRUE(scene.world.set_pose(scene.ball, {{500, 2, 0}, {}}));
         }
         ASSERT_TRUE((*recorder).add_frame(scene.world));
-        seen.push_back(look_at(scene.world));
+        expected.push_back(expected_of(scene.world));
     }
     ASSERT_TRUE((*recorder).finish());
     Result<Player> player = Player::open(folder / "run.faserec");
@@ -128,8 +129,8 @@ TEST(Recorder, RecordsWhatTheWorldDid) {
     EXPECT_EQ(tables.head.title, "a tower");
     EXPECT_EQ(tables.head.time_step, scene.world.settings().time_step);
     EXPECT_EQ(tables.head.stage_names.size(), stage_count);
-    EXPECT_EQ(tables.bodies.size(), 9u);  // eight, and the one that took a slot again
-    EXPECT_EQ(tables.shapes.size(), 5u);  // half-space, box, ball, zone, hull: boxes share one
+    EXPECT_EQ(tables.bodies.size(), 9u);  // eight, and the one that reuses a slot
+    EXPECT_EQ(tables.shapes.size(), 5u);  // half-space, box, ball, zone, hull; the boxes share one
     ASSERT_EQ(tables.visuals.size(), 1u);
     EXPECT_EQ(tables.bodies[tables.visuals[0].body].name, "ball");
     std::size_t hits = 0, sensed = 0, asleep = 0;
@@ -137,7 +138,7 @@ TEST(Recorder, RecordsWhatTheWorldDid) {
     for (std::uint64_t k = 0; k < 300; ++k) {
         const Result<void> read = (*player).read(k, frame);
         ASSERT_TRUE(read) << read.error().text();
-        expect_same(frame, seen[k], tables);
+        expect_same(frame, expected[k], tables);
         hits += frame.hits.size();
         sensed += frame.sensors_begun.size() + frame.sensors_ended.size();
         for (const BodyFrame& body : frame.bodies) asleep += body.kind == 2 && !body.awake ? 1 : 0;
@@ -147,7 +148,7 @@ TEST(Recorder, RecordsWhatTheWorldDid) {
     EXPECT_GT(asleep, 0u);
 }
 
-TEST(Recorder, ShowsCollidersThatComeAndGoFromTheNextBlockOn) {
+TEST(Recorder, ColliderChangesTakeEffectFromTheNextBlockOn) {
     const TemporaryFolder folder;
     Scene scene;
     RecorderOptions options;
@@ -175,16 +176,16 @@ TEST(Recorder, ShowsCollidersThatComeAndGoFromTheNextBlockOn) {
     EXPECT_LE(colliders[8].end_frame, 16u);
 }
 
-TEST(Recorder, LeavesTheWorldAsItIs) {
+TEST(Recorder, DoesNotChangeTheWorld) {
     const TemporaryFolder folder;
-    Scene recorded, alone;
+    Scene recorded, unrecorded;
     Result<Recorder> recorder = Recorder::create(folder / "run.faserec", recorded.world);
     ASSERT_TRUE(recorder);
     for (int k = 0; k < 60; ++k) {
         ASSERT_TRUE(recorded.world.step());
-        ASSERT_TRUE(alone.world.step());
+        ASSERT_TRUE(unrecorded.world.step());
         ASSERT_TRUE((*recorder).add_frame(recorded.world));
-        ASSERT_EQ(recorded.world.hash(), alone.world.hash());
+        ASSERT_EQ(recorded.world.hash(), unrecorded.world.hash());
     }
 }
 
@@ -202,7 +203,7 @@ TEST(Recorder, FinishesWhenItIsDestroyed) {
     EXPECT_EQ((*player).frames(), 1u);
 }
 
-TEST(Recorder, RefusesAVisualOfAMeshThatIsNotThere) {
+TEST(Recorder, RejectsAVisualWithAMissingMesh) {
     const TemporaryFolder folder;
     Scene scene;
     RecordingHead head;

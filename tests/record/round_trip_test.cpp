@@ -1,4 +1,4 @@
-/// What is written comes back: bodies within the promised bounds, all else exactly.
+/// Tests round trips: bodies are within the specified error, everything else is exact.
 #include <gtest/gtest.h>
 
 #include "fase/record/player.hpp"
@@ -23,7 +23,7 @@ void expect_same(const Frame& read, const Frame& written, bool contacts) {
         ASSERT_EQ(a.row, b.row);
         EXPECT_EQ(a.kind, b.kind);
         EXPECT_EQ(a.awake, b.awake);
-        EXPECT_EQ(a.broken, b.broken);
+        EXPECT_EQ(a.quarantined, b.quarantined);
         EXPECT_EQ(a.island, b.island);
         worst_metres = std::max(worst_metres, length(a.pose.position - b.pose.position));
         worst_degrees = std::max(worst_degrees, degrees_between(a.pose.rotation, b.pose.rotation));
@@ -64,7 +64,7 @@ struct Case {
 };
 class RoundTrip : public testing::TestWithParam<Case> {};
 
-TEST_P(RoundTrip, GivesEveryFrameBack) {
+TEST_P(RoundTrip, EveryFrameReadsBackAsWritten) {
     const TemporaryFolder folder;
     const std::string name = folder / "run.faserec";
     const ArtificialRun run(200, GetParam().origin);
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(All, RoundTrip,
                          testing::Values(Case{0, false, 64}, Case{0, true, 64}, Case{1e6, true, 7}, Case{1e7, false, 1},
                                          Case{-1e6, false, 64}));
 
-TEST(Recording, GivesItsTablesBack) {
+TEST(Recording, TablesReadBackAsWritten) {
     const TemporaryFolder folder;
     const ArtificialRun run(50);
     ASSERT_TRUE(record_run(folder / "run.faserec", run, 3));
@@ -124,7 +124,7 @@ TEST(Recording, GivesItsTablesBack) {
     EXPECT_EQ(tables.visuals[0].pose.position, (Vec3{1, 2, 3}));
 }
 
-TEST(Recording, TakesAtMost16BytesAnAwakeBodyAndFrameBeforePacking) {
+TEST(Recording, NeedsAtMost16BytesPerAwakeBodyAndFrameBeforeCompression) {
     const TemporaryFolder folder;
     for (const std::uint32_t bodies : {10u, 1000u, 20000u}) {
         const ArtificialRun run(bodies);
@@ -139,44 +139,44 @@ TEST(Recording, TakesAtMost16BytesAnAwakeBodyAndFrameBeforePacking) {
         }
         ASSERT_TRUE((*writer).finish());
         const FrameCost cost = (*writer).cost();
-        EXPECT_GT(cost.moves, awake * 9 / 10);  // all but the few that jump
+        EXPECT_GT(cost.moves, awake * 9 / 10);  // all except the few that jump
         EXPECT_LE(double(cost.move_bytes) / double(cost.moves), 16);
-        RecordProperty("bytes_a_body_" + std::to_string(bodies),
+        RecordProperty("bytes_per_body_" + std::to_string(bodies),
                        std::to_string(double(cost.move_bytes) / double(cost.moves)));
-        RecordProperty("packed_bytes_a_body_" + std::to_string(bodies),
+        RecordProperty("packed_bytes_per_body_" + std::to_string(bodies),
                        std::to_string(double((*writer).bytes()) / double(awake)));
     }
 }
 
-TEST(Recording, RefusesFramesThatCannotBeAndGoesOn) {
+TEST(Recording, RejectsInvalidFramesAndContinues) {
     const TemporaryFolder folder;
     const ArtificialRun run(20);
     Result<RecordingWriter> writer = RecordingWriter::create(folder / "run.faserec", ArtificialRun::head());
     ASSERT_TRUE(writer);
     ASSERT_TRUE(run.add_tables(*writer));
     const Frame good = run.frame(0);
-    const auto expect_refused = [&](const Frame& frame) {
+    const auto expect_rejected = [&](const Frame& frame) {
         EXPECT_EQ((*writer).add_frame(frame).status(), Status::BadArgument);
     };
     ASSERT_TRUE((*writer).add_frame(good));
     Frame bad = good;
     bad.bodies[3].pose.position.y = std::nan("");
-    expect_refused(bad);
+    expect_rejected(bad);
     bad = good;
     bad.bodies[3].pose.position.y = 2e9;
-    expect_refused(bad);
+    expect_rejected(bad);
     bad = good;
     bad.bodies[3].pose.rotation = {0, 0, 0, 0};
-    expect_refused(bad);
+    expect_rejected(bad);
     bad = good;
     bad.bodies.back().row = 20;
-    expect_refused(bad);
+    expect_rejected(bad);
     bad = good;
     std::swap(bad.bodies[3], bad.bodies[4]);
-    expect_refused(bad);
+    expect_rejected(bad);
     bad = good;
     bad.stage_ms.pop_back();
-    expect_refused(bad);
+    expect_rejected(bad);
     ASSERT_TRUE((*writer).add_frame(run.frame(1)));
     ASSERT_TRUE((*writer).finish());
     Result<Player> player = Player::open(folder / "run.faserec");
@@ -187,7 +187,7 @@ TEST(Recording, RefusesFramesThatCannotBeAndGoesOn) {
     expect_same(*second, run.frame(1), false);
 }
 
-TEST(Recording, OfNothingOpens) {
+TEST(Recording, EmptyRecordingOpens) {
     const TemporaryFolder folder;
     ASSERT_TRUE(record_run(folder / "run.faserec", ArtificialRun(0), 0));
     Result<Player> player = Player::open(folder / "run.faserec");

@@ -1,4 +1,4 @@
-/// Traces of boxes: written and read back, and broken in every way that a file can be.
+/// Tests box traces: round trips, and every kind of damaged file.
 #include "fase/record/trace.hpp"
 
 #include <gtest/gtest.h>
@@ -16,25 +16,25 @@ namespace fase::record {
 namespace {
 
 constexpr float infinity = Aabb::infinity;
-constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 using Frames = std::vector<std::vector<Aabb>>;
 
-/// Boxes that all move, but for every third, which is static, and for a half-space.
-Frames made_up(std::size_t boxes, std::size_t frames) {
+/// Returns frames with moving boxes; every third box is static, and the first is a half-space.
+Frames artificial_frames(std::size_t boxes, std::size_t frames) {
     Random random(7);
-    Frames made(frames, std::vector<Aabb>(boxes));
+    Frames result(frames, std::vector<Aabb>(boxes));
     for (std::size_t i = 0; i < boxes; ++i) {
         const Vec3 lo{random.between(-9, 9), random.between(-9, 9), random.between(-9, 9)};
         Aabb box{lo, lo + Vec3{random.unit(), random.unit(), 0}};
         if (i == 0) box = {{-infinity, -infinity, -infinity}, {infinity, 0, infinity}};
         for (std::size_t f = 0; f < frames; ++f) {
-            made[f][i] = box;
-            const Vec3 way{random.unit(), 0, -0.0f};
-            if (i % 3 != 0) box = {box.lo + way, box.hi + way};
+            result[f][i] = box;
+            const Vec3 offset{random.unit(), 0, -0.0f};
+            if (i % 3 != 0) box = {box.lo + offset, box.hi + offset};
         }
     }
-    return made;
+    return result;
 }
 std::vector<std::uint8_t> flags_for(std::size_t boxes) {
     std::vector<std::uint8_t> flags(boxes);
@@ -50,7 +50,7 @@ Result<void> write(const std::string& name, const Frames& frames, const std::vec
     return writer->finish(flags);
 }
 
-/// Reads to the end; how many frames, or the first error.
+/// Reads all frames; returns them or the first error.
 Result<Frames> read_all(const std::string& name) {
     Result<TraceReader> reader = TraceReader::open(name);
     if (!reader) return reader.error();
@@ -63,7 +63,7 @@ Result<Frames> read_all(const std::string& name) {
     }
 }
 
-/// A small trace as bytes, and the means to break it.
+/// A small trace as bytes, with functions to damage it.
 class BrokenTrace : public ::testing::Test {
 protected:
     static constexpr std::size_t boxes = 6, frames = 3, flags_at = 16, boxes_at = 16 + 8;
@@ -71,7 +71,7 @@ protected:
         return boxes_at + ((frame * boxes + body) * 6 + number) * 4;
     }
     void SetUp() override {
-        ASSERT_TRUE(write(name, made_up(boxes, frames), flags_for(boxes)));
+        ASSERT_TRUE(write(name, artificial_frames(boxes, frames), flags_for(boxes)));
         good = read_file(name);
         ASSERT_EQ(good.size(), boxes_at + boxes * frames * 24);
     }
@@ -81,24 +81,24 @@ protected:
     static void put(std::string& bytes, std::size_t offset, float value) {
         put(bytes, offset, std::bit_cast<std::uint32_t>(value));
     }
-    /// That the bytes are refused as Format, with the byte and the words in the message.
-    void expect_refused(const std::string& bytes, std::size_t offset, const std::string& words) {
+    /// Expects that the bytes are rejected with Format, and that the error contains the offset and the text.
+    void expect_rejected(const std::string& bytes, std::size_t offset, const std::string& text) {
         write_file(name, bytes);
         const Result<Frames> read = read_all(name);
-        ASSERT_FALSE(read) << words;
+        ASSERT_FALSE(read) << text;
         EXPECT_EQ(read.status(), Status::Format) << read.error().text();
         EXPECT_EQ(read.error().where, name + ":" + std::to_string(offset)) << read.error().text();
-        EXPECT_NE(read.error().problem.find(words), std::string::npos) << read.error().text();
+        EXPECT_NE(read.error().problem.find(text), std::string::npos) << read.error().text();
     }
     TemporaryFolder folder;
     std::string name = folder / "t.aabt", good;
 };
 
-TEST(Trace, ComesBackAsItWasWritten) {
+TEST(Trace, ReadsBackAsWritten) {
     const TemporaryFolder folder;
     for (const std::size_t boxes : {1u, 2u, 3u, 4u, 5u, 40000u}) {
         const std::string name = folder / "t.aabt";
-        const Frames frames = made_up(boxes, 3);
+        const Frames frames = artificial_frames(boxes, 3);
         const auto flags = flags_for(boxes);
         ASSERT_TRUE(write(name, frames, flags));
         EXPECT_EQ(std::filesystem::file_size(name), 16 + (boxes + 3) / 4 * 4 + boxes * 3 * 24);
@@ -113,9 +113,9 @@ TEST(Trace, ComesBackAsItWasWritten) {
     }
 }
 
-TEST(Trace, CanBeReadAgainFromItsBeginning) {
+TEST(Trace, RewindRestartsAtTheFirstFrame) {
     const TemporaryFolder folder;
-    ASSERT_TRUE(write(folder / "t.aabt", made_up(9, 2), flags_for(9)));
+    ASSERT_TRUE(write(folder / "t.aabt", artificial_frames(9, 2), flags_for(9)));
     Result<TraceReader> reader = TraceReader::open(folder / "t.aabt");
     ASSERT_TRUE(reader);
     std::vector<Aabb> boxes, first;
@@ -128,7 +128,7 @@ TEST(Trace, CanBeReadAgainFromItsBeginning) {
     EXPECT_TRUE(boxes == first);
 }
 
-TEST(Trace, OfOthersIsReadWhole) {
+TEST(Trace, SharedTracesAreReadCompletely) {
     const std::filesystem::path traces = std::filesystem::path(FASE_SHARED_DATA) / "traces";
     if (!std::filesystem::exists(traces)) GTEST_SKIP() << "skipped: " << traces << " is missing";
     std::size_t count = 0;
@@ -142,7 +142,7 @@ TEST(Trace, OfOthersIsReadWhole) {
     EXPECT_GE(count, 3u);
 }
 
-TEST_F(BrokenTrace, CutAtAnyByteIsRefused) {
+TEST_F(BrokenTrace, TruncatedFileIsRejected) {
     for (std::size_t length = 0; length < good.size(); ++length) {
         write_file(name, good.substr(0, length));
         const Result<Frames> read = read_all(name);
@@ -150,11 +150,11 @@ TEST_F(BrokenTrace, CutAtAnyByteIsRefused) {
         ASSERT_EQ(read.status(), Status::Format) << read.error().text();
         ASSERT_TRUE(read.error().where.starts_with(name + ":")) << read.error().text();
     }
-    expect_refused(good.substr(0, at(1, 2, 3)), at(1, 2, 3), "frame 1, body 2: found the end of the file");
+    expect_rejected(good.substr(0, at(1, 2, 3)), at(1, 2, 3), "frame 1, body 2: found the end of the file");
 }
 
-TEST_F(BrokenTrace, WithOneBitTurnedIsRefusedOrStillATrace) {
-    std::size_t refused = 0;
+TEST_F(BrokenTrace, FileWithAFlippedBitIsRejectedOrStillValid) {
+    std::size_t rejected = 0;
     for (std::size_t byte = 0; byte < good.size(); ++byte) {
         for (int bit = 0; bit < 8; ++bit) {
             std::string bytes = good;
@@ -163,80 +163,80 @@ TEST_F(BrokenTrace, WithOneBitTurnedIsRefusedOrStillATrace) {
             const Result<Frames> read = read_all(name);
             if (read) {
                 ASSERT_EQ(read->size(), frames);
-                ASSERT_GE(byte, 16u) << "a head with another bit is another file";
+                ASSERT_GE(byte, 16u) << "a changed head must be rejected";
                 continue;
             }
-            ++refused;
+            ++rejected;
             ASSERT_EQ(read.status(), Status::Format) << read.error().text();
             ASSERT_TRUE(read.error().where.starts_with(name + ":")) << read.error().text();
         }
     }
-    EXPECT_GT(refused, 16u * 8u);
+    EXPECT_GT(rejected, 16u * 8u);
 }
 
-TEST_F(BrokenTrace, ItsHeadIsJudgedFirst) {
+TEST_F(BrokenTrace, HeadIsCheckedFirst) {
     std::string bytes = good;
     bytes[0] = 'B';
-    expect_refused(bytes, 0, "AABT");
-    expect_refused("", 0, "found 0 bytes");
+    expect_rejected(bytes, 0, "AABT");
+    expect_rejected("", 0, "found 0 bytes");
     bytes = good;
     put(bytes, 4, 7u);
-    expect_refused(bytes, 4, "found version 7, this program reads 1");
+    expect_rejected(bytes, 4, "found version 7; this program reads 1");
     bytes = good;
     put(bytes, 8, 0u);
-    expect_refused(bytes, 8, "found 0 boxes");
+    expect_rejected(bytes, 8, "found 0 boxes");
     bytes = good;
     put(bytes, 12, 0u);
-    expect_refused(bytes, 12, "found 0 frames");
-    expect_refused(good + "x", good.size(), "found 1 bytes behind the last of 3 frames");
+    expect_rejected(bytes, 12, "found 0 frames");
+    expect_rejected(good + "x", good.size(), "found 1 bytes after the last of 3 frames");
     bytes = good;
     put(bytes, 12, 2u);
-    expect_refused(bytes, at(2, 0, 0), "behind the last of 2 frames");
+    expect_rejected(bytes, at(2, 0, 0), "after the last of 2 frames");
     bytes = good;
     bytes[flags_at + 5] = 4;
-    expect_refused(bytes, flags_at + 5, "body 5: found flags 4, need 0 to 3");
+    expect_rejected(bytes, flags_at + 5, "body 5: found flags 4; expected 0 to 3");
     bytes = good;
     bytes[flags_at + 7] = 1;
-    expect_refused(bytes, flags_at + 7, "found 1 behind the flags");
+    expect_rejected(bytes, flags_at + 7, "found 1 after the flags");
 }
 
-TEST_F(BrokenTrace, CountsThatTheFileCannotHoldCostNoMemory) {
+TEST_F(BrokenTrace, ImpossibleCountsAllocateNoMemory) {
     struct rusage before {
     }, after{};
     getrusage(RUSAGE_SELF, &before);
     for (const std::uint32_t count : {0xffffffffu, 0xfffffffcu, 0x80000000u, 0x0aaaaaabu}) {
         std::string bytes = good;
         put(bytes, 8, count);
-        expect_refused(bytes, 16, "need flags of " + std::to_string(count));
+        expect_rejected(bytes, 16, "of flags; expected " + std::to_string(count));
         bytes = good;
         put(bytes, 12, count);
-        expect_refused(bytes, good.size(), "found the end of the file after 3 frames");
+        expect_rejected(bytes, good.size(), "found the end of the file after 3 frames");
         put(bytes, 8, count);
-        expect_refused(bytes, 16, "need flags of");
+        expect_rejected(bytes, 16, "of flags; expected");
     }
     getrusage(RUSAGE_SELF, &after);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024);
 }
 
-TEST_F(BrokenTrace, ABadBoxIsNamedWithFrameAndBody) {
+TEST_F(BrokenTrace, ErrorNamesFrameAndBodyOfAnInvalidBox) {
     const auto with = [&](std::size_t frame, std::size_t body, std::size_t number, float value) {
         std::string bytes = good;
         put(bytes, at(frame, body, number), value);
         return bytes;
     };
-    expect_refused(with(1, 4, 2, no_number), at(1, 4, 2), "frame 1, body 4: found NaN as least z");
-    expect_refused(with(0, 2, 3, -no_number), at(0, 2, 3), "frame 0, body 2: found NaN as largest x");
-    expect_refused(with(2, 5, 4, -1e9f), at(2, 5, 1), "frame 2, body 5: found least y");
-    expect_refused(with(0, 1, 0, infinity), at(0, 1, 0), "above largest x");
+    expect_rejected(with(1, 4, 2, not_a_number), at(1, 4, 2), "frame 1, body 4: found NaN as lower z");
+    expect_rejected(with(0, 2, 3, -not_a_number), at(0, 2, 3), "frame 0, body 2: found NaN as upper x");
+    expect_rejected(with(2, 5, 4, -1e9f), at(2, 5, 1), "frame 2, body 5: found lower y");
+    expect_rejected(with(0, 1, 0, infinity), at(0, 1, 0), "above upper x");
     std::string bytes = with(0, 1, 0, infinity);
     put(bytes, at(0, 1, 3), infinity);
-    expect_refused(bytes, at(0, 1, 0), "not at infinity");
-    expect_refused(with(2, 3, 5, 1e9f), at(2, 3, 0), "frame 2, body 3: found a static body whose box moved");
-    // The first frame says where a static body stands, so it is the second that differs.
-    expect_refused(with(0, 3, 5, 1e9f), at(1, 3, 0), "frame 1, body 3: found a static body whose box moved");
+    expect_rejected(bytes, at(0, 1, 0), "not at infinity");
+    expect_rejected(with(2, 3, 5, 1e9f), at(2, 3, 0), "frame 2, body 3: found a static body whose box moved");
+    // The first frame defines the box of a static body, so the error is in the second frame.
+    expect_rejected(with(0, 3, 5, 1e9f), at(1, 3, 0), "frame 1, body 3: found a static body whose box moved");
 }
 
-TEST_F(BrokenTrace, InfiniteBoxesAndMinusZeroAreGood) {
+TEST_F(BrokenTrace, InfiniteBoxesAndMinusZeroAreValid) {
     std::string bytes = good;
     put(bytes, at(1, 4, 0), -infinity);
     put(bytes, at(1, 4, 3), infinity);
@@ -249,7 +249,7 @@ TEST_F(BrokenTrace, InfiniteBoxesAndMinusZeroAreGood) {
     EXPECT_EQ((*read)[1][4].hi.x, infinity);
 }
 
-TEST_F(BrokenTrace, WhatIsNoFileIsRefused) {
+TEST_F(BrokenTrace, SpecialFilesAreRejected) {
     EXPECT_EQ(TraceReader::open(folder / "none.aabt").status(), Status::Io);
     EXPECT_EQ(TraceReader::open(folder.path()).status(), Status::Io);
     EXPECT_EQ(TraceReader::open("/dev/zero").status(), Status::Io);
@@ -257,23 +257,23 @@ TEST_F(BrokenTrace, WhatIsNoFileIsRefused) {
     EXPECT_EQ(TraceReader::open(folder / "pipe").status(), Status::Io);
 }
 
-TEST(TraceWriter, GivesTheFileItsNameWhenItIsWhole) {
+TEST(TraceWriter, RenamesTheFileWhenItIsComplete) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     write_file(name, "old");
     Result<TraceWriter> writer = TraceWriter::create(name, 4);
     ASSERT_TRUE(writer) << writer.error().text();
     EXPECT_EQ(TraceWriter::create(name, 4).status(), Status::Busy);
-    for (const auto& frame : made_up(4, 2)) ASSERT_TRUE(writer->add_frame(frame));
+    for (const auto& frame : artificial_frames(4, 2)) ASSERT_TRUE(writer->add_frame(frame));
     EXPECT_EQ(read_file(name), "old");
-    EXPECT_EQ(TraceReader::open(name + ".part").status(), Status::Format) << "it holds no frame yet";
+    EXPECT_EQ(TraceReader::open(name + ".part").status(), Status::Format) << "its frame count is still 0";
     ASSERT_TRUE(writer->finish(flags_for(4)));
     EXPECT_TRUE(read_all(name));
     EXPECT_FALSE(std::filesystem::exists(name + ".part"));
-    EXPECT_FALSE(writer->add_frame(made_up(4, 1)[0])) << "it is closed";
+    EXPECT_FALSE(writer->add_frame(artificial_frames(4, 1)[0])) << "the file is closed";
 }
 
-TEST(TraceWriter, RefusesWhatAReaderWouldRefuse) {
+TEST(TraceWriter, RejectsWhatAReaderWouldReject) {
     const TemporaryFolder folder;
     EXPECT_EQ(TraceWriter::create(folder / "t.aabt", 0).status(), Status::BadArgument);
     EXPECT_EQ(TraceWriter::create("/dev/null", 4).status(), Status::Io);
@@ -281,9 +281,9 @@ TEST(TraceWriter, RefusesWhatAReaderWouldRefuse) {
     Result<TraceWriter> writer = TraceWriter::create(folder / "t.aabt", 4);
     ASSERT_TRUE(writer);
     EXPECT_EQ(writer->finish(flags_for(4)).status(), Status::BadArgument) << "without a frame";
-    const Frames frames = made_up(4, 2);
-    EXPECT_EQ(writer->add_frame(made_up(5, 1)[0]).status(), Status::BadArgument);
-    for (const Aabb& bad : {Aabb{}, Aabb{{0, 0, no_number}, {1, 1, 1}}, Aabb{{infinity, 0, 0}, {infinity, 1, 1}}}) {
+    const Frames frames = artificial_frames(4, 2);
+    EXPECT_EQ(writer->add_frame(artificial_frames(5, 1)[0]).status(), Status::BadArgument);
+    for (const Aabb& bad : {Aabb{}, Aabb{{0, 0, not_a_number}, {1, 1, 1}}, Aabb{{infinity, 0, 0}, {infinity, 1, 1}}}) {
         std::vector<Aabb> boxes = frames[0];
         boxes[2] = bad;
         const Result<void> added = writer->add_frame(boxes);
@@ -299,18 +299,18 @@ TEST(TraceWriter, RefusesWhatAReaderWouldRefuse) {
     EXPECT_TRUE(*read_all(folder / "t.aabt") == frames);
 }
 
-TEST(TraceWriter, LeavesNothingWhenItIsDiscarded) {
+TEST(TraceWriter, DiscardRemovesTheFile) {
     const TemporaryFolder folder;
     Result<TraceWriter> writer = TraceWriter::create(folder / "t.aabt", 4);
     ASSERT_TRUE(writer);
-    ASSERT_TRUE(writer->add_frame(made_up(4, 1)[0]));
+    ASSERT_TRUE(writer->add_frame(artificial_frames(4, 1)[0]));
     writer->discard();
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-    EXPECT_EQ(writer->add_frame(made_up(4, 1)[0]).status(), Status::Io);
+    EXPECT_EQ(writer->add_frame(artificial_frames(4, 1)[0]).status(), Status::Io);
     EXPECT_EQ(writer->finish(flags_for(4)).status(), Status::Io);
 }
 
-TEST(TraceWriter, CompletesWhatFittedOnAFullDisk) {
+TEST(TraceWriter, CompletesTheWrittenFramesOnAFullDisk) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     Result<TraceWriter> writer = TraceWriter::create(name, 400);
@@ -319,17 +319,17 @@ TEST(TraceWriter, CompletesWhatFittedOnAFullDisk) {
     getrlimit(RLIMIT_FSIZE, &before);
     const rlimit small{25000, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    const Frames frames = made_up(400, 3);
-    std::vector<Status> answers;
+    const Frames frames = artificial_frames(400, 3);
+    std::vector<Status> statuses;
     std::string problem;
     for (const auto& frame : frames) {
         const Result<void> added = writer->add_frame(frame);
-        answers.push_back(added.status());
+        statuses.push_back(added.status());
         if (!added) problem = added.error().problem;
     }
     const Result<void> finished = writer->finish(flags_for(400));
     setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_EQ(answers, (std::vector<Status>{Status::Ok, Status::Ok, Status::Io}));
+    EXPECT_EQ(statuses, (std::vector<Status>{Status::Ok, Status::Ok, Status::Io}));
     EXPECT_NE(problem.find("wrote 2 frames, 19616 bytes"), std::string::npos) << problem;
     ASSERT_TRUE(finished) << finished.error().text();
     const Result<Frames> back = read_all(name);

@@ -1,4 +1,4 @@
-/// Tests of the generators: sizes, no overlaps, small gaps, the same bits every time.
+/// Tests of the generators: sizes, no overlaps, small gaps, reproducible bits.
 #include "fase/scene/generate.hpp"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ struct Placed {
     const Collider* collider = nullptr;
 };
 
-/// All colliders, by the left end of their box.
-std::vector<Placed> placed(const Scene& scene) {
+/// All colliders, sorted by the lower x of their box.
+std::vector<Placed> placed_colliders(const Scene& scene) {
     std::vector<Placed> all;
     for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
         const Body& body = scene.bodies[i];
@@ -34,14 +34,15 @@ std::vector<Placed> placed(const Scene& scene) {
     return all;
 }
 
-/// Calls f(a, b, manifold) for each two colliders of different bodies, one of them dynamic, within `margin`.
+/// Calls f(a, b, manifold) for each pair of colliders of different bodies within `margin`; at least one body is
+/// dynamic.
 template <class F> void for_each_near(const Scene& scene, float margin, F&& f) {
-    const std::vector<Placed> all = placed(scene);
+    const std::vector<Placed> all = placed_colliders(scene);
     for (std::size_t i = 0; i < all.size(); ++i) {
         for (std::size_t j = i + 1; j < all.size() && all[j].box.lo.x <= all[i].box.hi.x + margin; ++j) {
             const Body &a = scene.bodies[all[i].body], &b = scene.bodies[all[j].body];
             const bool moves = a.def.kind == BodyKind::Dynamic || b.def.kind == BodyKind::Dynamic;
-            if (all[i].body == all[j].body || !moves || !overlaps(grown(all[i].box, margin), all[j].box)) continue;
+            if (all[i].body == all[j].body || !moves || !overlaps(enlarged(all[i].box, margin), all[j].box)) continue;
             const LocalPose b_in_a = relative(Pose{a.def.position, a.def.rotation} * all[i].collider->def.pose,
                                               Pose{b.def.position, b.def.rotation} * all[j].collider->def.pose);
             f(all[i].body, all[j].body,
@@ -52,13 +53,13 @@ template <class F> void for_each_near(const Scene& scene, float margin, F&& f) {
 }
 
 float min_separation(const narrow::Manifold& manifold) {
-    float least = 1e9f;
+    float smallest = 1e9f;
     for (int i = 0; i < manifold.count; ++i)
-        least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
-    return least;
+        smallest = std::min(smallest, manifold.points[static_cast<std::size_t>(i)].separation);
+    return smallest;
 }
 
-TEST(Generate, NoTwoBodiesOverlapAtTheStart) {
+TEST(Generate, NoBodiesOverlapInitially) {
     for (const Generator& kind : generators()) {
         const Scene scene = *generate(kind.name);
         std::size_t overlapping = 0;
@@ -77,8 +78,7 @@ TEST(Generate, EveryStoneOfTheCastleRestsOnSomething) {
     std::vector<bool> rests(scene.bodies.size(), false);
     for_each_near(scene, 0.001f, [&](std::uint32_t a, std::uint32_t b, const narrow::Manifold& manifold) {
         if (manifold.count == 0) return;
-        // The normal is in a's frame, from a to b: the upper one of the two rests. Arch stones and round things lean at
-        // an angle.
+        // The normal is in a's frame and points from a to b: the upper body rests. Arch stones and round bodies lean.
         const float up = rotate(scene.bodies[a].def.rotation, manifold.normal).y;
         if (up > 0.02f) rests[b] = true;
         if (up < -0.02f) rests[a] = true;
@@ -90,7 +90,7 @@ TEST(Generate, EveryStoneOfTheCastleRestsOnSomething) {
     }
 }
 
-TEST(Generate, KindsHaveTheBodiesTheyPromise) {
+TEST(Generate, KindsHaveTheirNumberOfBodies) {
     const auto count = [](std::string_view kind, std::size_t bodies = 0) {
         return dynamic_bodies(*generate(kind, {.count = bodies}));
     };
@@ -117,19 +117,19 @@ TEST(Generate, TheLargePyramidIsAWallOfTouchingUnitBoxes) {
     EXPECT_EQ(scene.bodies.back().def.position, (Vec3d{0, 99.5, 0}));
 }
 
-TEST(Generate, TheDrumTurnsAtTwentyFiveDegreesASecond) {
+TEST(Generate, TheDrumRotatesAtTwentyFiveDegreesPerSecond) {
     const Scene scene = *generate("washer");
     EXPECT_EQ(scene.bodies[0].def.kind, BodyKind::Kinematic);
     EXPECT_NEAR(scene.bodies[0].def.angular_velocity.z, 0.4363323f, 1e-6f);
 }
 
-TEST(Generate, TheVolleyOfTheCastleArrives) {
+TEST(Generate, TheVolleyHitsTheCastle) {
     const Scene scene = *generate("castle");
     std::size_t balls = 0;
     for (const Body& body : scene.bodies) {
         if (body.name != "ball" && body.name != "boulder") continue;
         ++balls;
-        // The nearest that its flight comes to the keep's axis, in steps of 10 ms.
+        // The smallest distance of its flight from the keep's axis, in steps of 10 ms.
         double nearest = 1e9;
         for (double t = 0; t < 12; t += 0.01) {
             const Vec3d p =
@@ -151,13 +151,13 @@ TEST(Generate, EqualSeedsGiveEqualScenesAndOthersDoNot) {
     }
 }
 
-TEST(Generate, RefusesWhatItCannotMake) {
+TEST(Generate, RefusesUnknownKindsAndHugeCounts) {
     EXPECT_EQ(generate("palace").status(), Status::BadArgument);
     EXPECT_NE(generate("palace").error().text().find("castle"), std::string::npos);
     EXPECT_EQ(generate("pile", {.count = 1000001}).status(), Status::OutOfRange);
 }
 
-TEST(Generate, OwnSineAndCosineAreRight) {
+TEST(Generate, SineAndCosineAreAccurate) {
     for (int i = -2000; i <= 2000; ++i) {
         const double angle = i * 0.05;
         EXPECT_NEAR(sin_cos(angle).sin, std::sin(angle), 1e-13);

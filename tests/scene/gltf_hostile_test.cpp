@@ -1,4 +1,4 @@
-/// Tests of the glTF reader against truncated, damaged and hostile files: an error of one line or a scene, never a
+/// Tests of the glTF reader with truncated, damaged and hostile files: each gives a one-line error or a scene, never a
 /// crash.
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -17,7 +17,7 @@ namespace {
 
 using test::read_text;
 
-/// What must hold of any answer.
+/// Expects what every result must satisfy.
 void expect_sane(const Result<Scene>& scene, const std::string& what) {
     if (!scene) {
         const std::string text = scene.error().text();
@@ -42,7 +42,7 @@ void expect_sane(const Result<Scene>& scene, const std::string& what) {
     }
 }
 
-/// A small scene with a bit of everything, as a file.
+/// A small scene with bodies, hulls and visuals, as a file.
 std::string sample(GltfForm form) {
     const Result<Scene> scene = read_gltf(test::fixture("meshes.gltf"));
     EXPECT_TRUE(scene);
@@ -77,7 +77,7 @@ TEST(HostileGltf, OneBitFlippedAtEveryByte) {
 }
 
 TEST(HostileGltf, NumbersReplacedByHostileOnes) {
-    // Every number of the files, one after the other, becomes each of these.
+    // Replaces every number of the files, one at a time, by each of these.
     for (const std::string_view name :
          {"meshes.gltf", "hierarchy.gltf", "motions.gltf", "surfaces.gltf", "joints.gltf", "shapes.gltf"}) {
         const std::string whole = test::content_of(test::fixture(name));
@@ -104,8 +104,8 @@ TEST(HostileGltf, ValidatorFilesNeverCrashAndStructuralErrorsAreRefused) {
     const std::filesystem::path folder = std::filesystem::path(FASE_SHARED_DATA) / "gltf-validator";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no " << folder;
     std::size_t files = 0, refused = 0, accepted = 0;
-    // What the validator calls errors in parts that Fase does not read; files with only these are none of its business.
-    const auto unread = [](std::string_view pointer, std::string_view code) {
+    // Errors of the validator in parts that Fase does not read; files with only these may be accepted.
+    const auto is_ignored = [](std::string_view pointer, std::string_view code) {
         for (const std::string_view part :
              {"/animations", "/cameras", "/images", "/samplers", "/skins", "/textures", "/extensionsUsed"}) {
             if (pointer.starts_with(part)) return true;
@@ -114,8 +114,7 @@ TEST(HostileGltf, ValidatorFilesNeverCrashAndStructuralErrorsAreRefused) {
              {"/weights", "/targets", "/skin", "Texture", "/min", "/max", "JOINTS", "WEIGHTS", "TANGENT", "NORMAL"}) {
             if (pointer.find(part) != std::string_view::npos) return true;
         }
-        // Data of a mesh beyond its positions, ranges that a file states of its data, and rules on what else may refer
-        // to it.
+        // Mesh data except positions, declared ranges of data, and rules about other references to it.
         for (const std::string_view part :
              {"ACCESSOR_M", "MESH_PRIMITIVE", "ACCESSOR_INDEX_PRIMITIVE_RESTART", "MESH_INVALID_WEIGHTS",
               "UNDEFINED_PROPERTY", "INVALID_EXTENSION_NAME", "UNSATISFIED_DEPENDENCY", "UNEXPECTED_EXTENSION",
@@ -142,9 +141,9 @@ TEST(HostileGltf, ValidatorFilesNeverCrashAndStructuralErrorsAreRefused) {
         std::string structural;
         report->root().find("issues")->find("messages")->for_each_element([&](JsonValue message) {
             const auto pointer = message.find("pointer");
-            const std::string_view at = pointer ? pointer->string() : "", code = message.find("code")->string();
-            if (message.find("severity")->number() == 0 && !unread(at, code))
-                structural += std::string(code) + " at " + std::string(at) + "; ";
+            const std::string_view where = pointer ? pointer->string() : "", code = message.find("code")->string();
+            if (message.find("severity")->number() == 0 && !is_ignored(where, code))
+                structural += std::string(code) + " at " + std::string(where) + "; ";
         });
         if (!structural.empty()) {
             EXPECT_FALSE(scene) << entry.path() << ": " << structural;
@@ -155,12 +154,12 @@ TEST(HostileGltf, ValidatorFilesNeverCrashAndStructuralErrorsAreRefused) {
     EXPECT_GT(refused, 40u);
 }
 
-/// A file of two nodes whose members are given.
+/// A file with these nodes.
 std::string with_nodes(std::string_view nodes, std::string_view rest = "") {
     return R"({"asset":{"version":"2.0"},"nodes":[)" + std::string(nodes) + "]" + std::string(rest) + "}";
 }
 
-TEST(HostileGltf, TreesThatAreNoneAreRefusedByTheNodesName) {
+TEST(HostileGltf, InvalidTreesAreRefusedAndTheNodeIsNamed) {
     const auto error_of = [](const std::string& text) {
         const auto scene = read_text(text);
         EXPECT_FALSE(scene) << text;
@@ -176,7 +175,7 @@ TEST(HostileGltf, TreesThatAreNoneAreRefusedByTheNodesName) {
     EXPECT_NE(error_of(with_nodes(R"({"children":[7]})")).find("index 7"), std::string::npos);
     EXPECT_NE(error_of(with_nodes("{}", R"(,"scene":3,"scenes":[{"nodes":[0]}])")).find("/scene"), std::string::npos);
     EXPECT_NE(error_of(with_nodes("{}", R"(,"scenes":[{"nodes":[9]}])")).find("/scenes/0/nodes/0"), std::string::npos);
-    EXPECT_NE(error_of(with_nodes(R"({"children":[1]},{})", R"(,"scenes":[{"nodes":[1]}])")).find("need a root"),
+    EXPECT_NE(error_of(with_nodes(R"({"children":[1]},{})", R"(,"scenes":[{"nodes":[1]}])")).find("expected a root"),
               std::string::npos);
     EXPECT_NE(error_of(with_nodes(R"({"scale":[1,1]})")).find("/nodes/0/scale"), std::string::npos);
     EXPECT_NE(error_of(with_nodes(R"({"rotation":[0,0,0,0]})")).find("length 0"), std::string::npos);
@@ -192,7 +191,7 @@ TEST(HostileGltf, ALongChainOfNodesIsRefusedAndManyChildrenAreRead) {
     EXPECT_TRUE(read_text(with_nodes(wide)));
 }
 
-/// A file with one mesh of 3 points whose buffer, view and accessor members are given.
+/// A file with one mesh of 3 points and these members of its buffer, view and accessor.
 std::string with_accessor(std::string_view accessor, std::string_view view = R"("buffer":0,"byteLength":36)",
                           std::string_view buffer = R"("byteLength":36)") {
     return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{)" +
@@ -200,7 +199,7 @@ std::string with_accessor(std::string_view accessor, std::string_view view = R"(
            std::string(buffer) + R"(,"uri":"data:;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"}]})";
 }
 
-TEST(HostileGltf, OffsetsAndCountsAreHeldAgainstTheData) {
+TEST(HostileGltf, OffsetsAndCountsAreCheckedAgainstTheData) {
     EXPECT_TRUE(read_text(with_accessor(R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")")));
     for (
         const std::string_view accessor : {
@@ -235,8 +234,8 @@ TEST(HostileGltf, OffsetsAndCountsAreHeldAgainstTheData) {
     }
 }
 
-TEST(HostileGltf, ManyViewsOfTheSameBytesDoNotGrowWithoutLimit) {
-    // A megabyte of zeros that a thousand accessors each decode anew.
+TEST(HostileGltf, ManyViewsOfTheSameBytesStayWithinTheMemoryLimit) {
+    // A megabyte of zeros that a thousand accessors decode again.
     std::string text = R"({"asset":{"version":"2.0"},"nodes":[)", meshes, accessors;
     for (int i = 0; i < 1000; ++i) {
         const std::string comma = i == 0 ? "" : ",", number = std::to_string(i);
@@ -251,7 +250,7 @@ TEST(HostileGltf, ManyViewsOfTheSameBytesDoNotGrowWithoutLimit) {
     const auto scene = read_text(text);
     ASSERT_FALSE(scene);
     EXPECT_NE(scene.error().text().find("grows"), std::string::npos) << scene.error().text();
-    // A hundred bytes each that become hulls of kilobytes.
+    // Elements of a hundred bytes that become hulls of kilobytes.
     std::string shapes, nodes;
     for (int i = 0; i < 10000; ++i) {
         shapes.append(i == 0 ? "" : ",").append(R"({"type":"capsule","capsule":{"radiusTop":0.1,"radiusBottom":0.5)");
@@ -263,11 +262,11 @@ TEST(HostileGltf, ManyViewsOfTheSameBytesDoNotGrowWithoutLimit) {
         read_text(with_nodes(nodes, R"(,"extensions":{"OMI_physics_shape":{"shapes":[)" + shapes + "]}}"));
     ASSERT_FALSE(cones);
     EXPECT_NE(cones.error().text().find("grows"), std::string::npos) << cones.error().text();
-    // Zeros that no byte of the file stands for.
+    // Zeros without bytes in the file.
     EXPECT_FALSE(read_text(with_accessor(R"("componentType":5126,"count":4294967295,"type":"VEC3")")));
 }
 
-TEST(HostileGltf, UrisThatLeadOutAreRefused) {
+TEST(HostileGltf, UrisOutsideTheFolderAreRefused) {
     const test::TemporaryFolder folder;
     std::filesystem::create_directory(folder / "model");
     const std::string model = folder / "model";
@@ -290,7 +289,7 @@ TEST(HostileGltf, UrisThatLeadOutAreRefused) {
     }
 }
 
-TEST(HostileGltf, ContainersThatLieAreRefusedAtTheirByte) {
+TEST(HostileGltf, InvalidContainersAreRefusedAtTheirByte) {
     const std::string whole = sample(GltfForm::Binary);
     const auto changed = [&](std::size_t at, char value) {
         std::string text = whole;
@@ -307,7 +306,7 @@ TEST(HostileGltf, ContainersThatLieAreRefusedAtTheirByte) {
     EXPECT_EQ(read_text(whole.substr(0, 10)).error().where, "test.gltf: byte 10");
 }
 
-TEST(HostileGltf, PhysicsThatCannotBeIsRefused) {
+TEST(HostileGltf, InvalidPhysicsIsRefused) {
     const auto with_node = [](std::string_view physics, std::string_view shape = R"({"type":"box"})") {
         return read_text(R"({"asset":{"version":"2.0"},"extensions":{"KHR_implicit_shapes":{"shapes":[)" +
                          std::string(shape) + R"(]}},"nodes":[{"extensions":{"KHR_physics_rigid_bodies":)" +
@@ -335,8 +334,7 @@ TEST(HostileGltf, PhysicsThatCannotBeIsRefused) {
 }
 
 TEST(HostileGltf, MemoryStaysWithinSixteenTimesTheFile) {
-    // Bytes in use are asked of the allocator while the document is at its largest: after the reading, with the scene
-    // held.
+    // Reads the bytes in use from the allocator while the document exists.
     for (const std::string_view element : {"0,", "{},", "[],", "\"\",", "{\"a\":0},"}) {
         std::string text = R"({"asset":{"version":"2.0"},"extras":[)";
         while (text.size() < 8u << 20) text += element;

@@ -1,4 +1,4 @@
-/// Tests of what the glTF reader makes of well-formed files: the KHR extensions, their forerunners, node hierarchies.
+/// Tests of the glTF reader with valid files: the KHR extensions, their predecessors, node hierarchies.
 #include "fase/scene/gltf.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ Aabb box_of(const Scene& scene, const Body& body, std::size_t collider = 0) {
     return bounds(scene.shapes[c.shape], Pose{body.def.position, body.def.rotation} * c.def.pose);
 }
 
-TEST(GltfShapes, HaveTheSizesTheFileGives) {
+TEST(GltfShapes, HaveTheSizesOfTheFile) {
     const Scene scene = read("shapes.gltf");
     EXPECT_EQ(shape_of<Sphere>(scene, body_named(scene, "sphere")).radius, 0.75f);
     EXPECT_EQ(shape_of<Box>(scene, body_named(scene, "box")).half, (Vec3{0.5f, 1, 1.5f}));
@@ -49,11 +49,11 @@ TEST(GltfShapes, HaveTheDefaultsOfTheExtension) {
     EXPECT_EQ(shape_of<Cylinder>(scene, body_named(scene, "default cylinder")), (Cylinder{0.25f, 0.25f}));
 }
 
-TEST(GltfShapes, TaperedOnesBecomeHulls) {
+TEST(GltfShapes, TaperedShapesBecomeHulls) {
     const Scene scene = read("shapes.gltf");
     const ConvexHull& cone = shape_of<ConvexHull>(scene, body_named(scene, "cone"));
     EXPECT_EQ(cone.core_support(Vec3{0, 1, 0}), (Vec3{0, 1, 0}));
-    // A cone's volume; the 32 sides cut off under 1 %.
+    // A cone's volume; the 32 sides reduce it by less than 1 %.
     EXPECT_NEAR(mass_properties(Shape(cone), 1).mass, 3.14159f * 0.25f * 2 / 3, 0.01f);
     const ConvexHull& capsule = shape_of<ConvexHull>(scene, body_named(scene, "tapered capsule"));
     EXPECT_NEAR(capsule.core_support(Vec3{0, 1, 0}).y, 0.7f, 1e-5f);
@@ -65,10 +65,10 @@ TEST(GltfShapes, AFinitePlaneIsABoxUnderItsSurface) {
     const Aabb box = box_of(scene, body_named(scene, "table"));
     EXPECT_NEAR(box.hi.y, 0, 1e-6);
     EXPECT_NEAR(box.hi.z, 3, 1e-5);
-    EXPECT_TRUE(warns(scene, "planes of finite size are taken as boxes 0.1 m thick"));
+    EXPECT_TRUE(warns(scene, "planes of finite size are replaced by boxes 0.1 m thick"));
 }
 
-TEST(GltfMotion, LeavesTheMassToTheDensityWhenItSaysNothing) {
+TEST(GltfMotion, WithoutAMassTheDensityDeterminesIt) {
     const Scene scene = read("motions.gltf");
     const Body& body = body_named(scene, "by density");
     EXPECT_EQ(body.def.kind, BodyKind::Dynamic);
@@ -85,7 +85,7 @@ TEST(GltfMotion, ScalesTheInertiaToTheMass) {
     EXPECT_NEAR(body.def.mass->inertia.z.z, 4000 * (1 + 1) / 12.0, 0.1);
 }
 
-TEST(GltfMotion, TakesMassCentreAndTurnedInertiaAsGiven) {
+TEST(GltfMotion, KeepsGivenMassCentreAndRotatedInertia) {
     const Scene scene = read("motions.gltf");
     const Body& body = body_named(scene, "all given");
     ASSERT_TRUE(body.def.mass);
@@ -118,7 +118,7 @@ TEST(GltfMotion, ZeroMeansInfinite) {
     EXPECT_EQ(inertia.mass->mass, 1);
 }
 
-TEST(GltfMotion, ABodyWithoutCollidersIsABallOfItsMass) {
+TEST(GltfMotion, ABodyWithoutCollidersHasTheInertiaOfABall) {
     const Scene scene = read("motions.gltf");
     const Body& body = body_named(scene, "no collider");
     ASSERT_TRUE(body.def.mass);
@@ -133,7 +133,8 @@ TEST(GltfSurfaces, KeepMaterials) {
     EXPECT_EQ(rubber, (Material{0.8f, 0.7f, CombineMode::Maximum, CombineMode::Multiply}));
     const Material ice = body_named(scene, "ice").colliders[0].def.material;
     EXPECT_EQ(ice, (Material{0.1f, 0, CombineMode::Minimum, CombineMode::Average}));
-    EXPECT_TRUE(warns(scene, "static friction that differs from dynamic is not simulated, dynamic is taken"));
+    EXPECT_TRUE(
+        warns(scene, "static friction that differs from dynamic friction is not simulated, dynamic friction is used"));
 }
 
 TEST(GltfSurfaces, MapCollisionSystemsToBits) {
@@ -148,7 +149,7 @@ TEST(GltfSurfaces, MapCollisionSystemsToBits) {
     EXPECT_TRUE(meet("landscape", "plain"));
 }
 
-TEST(GltfSurfaces, MakeSensorsOfTriggers) {
+TEST(GltfSurfaces, ConvertTriggersToSensors) {
     const Scene scene = read("surfaces.gltf");
     const Body& trigger = body_named(scene, "trigger");
     ASSERT_EQ(trigger.colliders.size(), 1u);
@@ -158,12 +159,12 @@ TEST(GltfSurfaces, MakeSensorsOfTriggers) {
     expect_near(body_named(scene, "part").def.position, Vec3d{1, 0, 0});
 }
 
-TEST(GltfHierarchy, GathersColliderNodesIntoTheirBody) {
+TEST(GltfHierarchy, AddsColliderNodesToTheirBody) {
     const Scene scene = read("hierarchy.gltf");
     const Body& body = body_named(scene, "body");
     ASSERT_EQ(body.colliders.size(), 2u);
     expect_near(body.def.position, Vec3d{10, 5, 0});
-    // The parent's scale of 2 acts on sizes and distances; the turn is the body's.
+    // The parent's scale of 2 applies to sizes and distances; its rotation applies to the body.
     EXPECT_EQ(shape_of<Box>(scene, body, 0).half, (Vec3{1, 1, 1}));
     expect_near(body.colliders[0].def.pose.position, Vec3{2, 0, 0});
     EXPECT_EQ(shape_of<Box>(scene, body, 1).half, (Vec3{1, 3, 0.5f}));
@@ -173,7 +174,7 @@ TEST(GltfHierarchy, GathersColliderNodesIntoTheirBody) {
     expect_near(left.hi, Vec3{11, 8, 1}, 1e-4);
 }
 
-TEST(GltfHierarchy, ABodyBelowABodyIsItsOwn) {
+TEST(GltfHierarchy, ABodyBelowABodyIsSeparate) {
     const Scene scene = read("hierarchy.gltf");
     const Body& inner = body_named(scene, "inner body");
     expect_near(inner.def.position, Vec3d{2, 5, 0});
@@ -193,10 +194,10 @@ TEST(GltfHierarchy, ScalesAndMirrorsShapes) {
     const Aabb matrix = box_of(scene, body_named(scene, "matrix"));
     expect_near(matrix.lo, Vec3{0, 1, 2}, 1e-4);
     expect_near(matrix.hi, Vec3{2, 3, 4}, 1e-4);
-    EXPECT_TRUE(warns(scene, "colliders of nodes that are scaled to nothing are left out"));
+    EXPECT_TRUE(warns(scene, "colliders of nodes with a zero scale are skipped"));
 }
 
-TEST(GltfMeshes, BecomeHullsOrAreNamed) {
+TEST(GltfMeshes, BecomeHullsOrGiveAWarning) {
     const Scene scene = read("meshes.gltf");
     const ConvexHull& hull = shape_of<ConvexHull>(scene, body_named(scene, "hull"));
     EXPECT_EQ(hull.vertices.size(), 6u);
@@ -205,10 +206,10 @@ TEST(GltfMeshes, BecomeHullsOrAreNamed) {
     expect_near(stretched.lo, Vec3{4, 1, -1}, 1e-4);
     expect_near(stretched.hi, Vec3{6, 5, 1}, 1e-4);
     EXPECT_TRUE(warns(scene, "triangle-mesh colliders are not simulated yet"));
-    for (const Body& body : scene.bodies) EXPECT_NE(body.name, "triangles") << "a body of nothing";
+    for (const Body& body : scene.bodies) EXPECT_NE(body.name, "triangles") << "an empty body";
 }
 
-TEST(GltfMeshes, StayForThePicture) {
+TEST(GltfMeshes, AreKeptAsVisuals) {
     const Scene scene = read("meshes.gltf");
     ASSERT_EQ(scene.meshes.size(), 1u) << "one mesh shared by all";
     EXPECT_EQ(scene.meshes[0].indices.size(), 24u);
@@ -224,7 +225,7 @@ TEST(GltfMeshes, StayForThePicture) {
     EXPECT_EQ(body.visuals[0].linear, Mat3::diagonal({1, 1, 2}));
 }
 
-TEST(GltfJoints, AreReadAndNamed) {
+TEST(GltfJoints, AreReadWithTheirType) {
     const Scene scene = read("joints.gltf");
     ASSERT_EQ(scene.joints.size(), 2u);
     EXPECT_EQ(scene.joints[0].type, "hinge");
@@ -256,23 +257,23 @@ TEST(GltfOlderNames, OmiBodiesOfTheFirstVersionAreRead) {
     EXPECT_EQ(crate.def.kind, BodyKind::Dynamic);
     EXPECT_EQ(crate.def.mass->mass, 5);
     expect_near(crate.def.linear_velocity, Vec3{0, -1, 0});
-    EXPECT_EQ(shape_of<Capsule>(scene, crate), (Capsule{0.5f, 1})) << "the height counts the caps";
+    EXPECT_EQ(shape_of<Capsule>(scene, crate), (Capsule{0.5f, 1})) << "the height includes the caps";
     EXPECT_EQ(body_named(scene, "floor").def.kind, BodyKind::Static);
     EXPECT_TRUE(body_named(scene, "goal shape").colliders[0].def.sensor);
     expect_near(scene.gravity, Vec3{0, -1.62f, 0});
 }
 
-TEST(GltfReader, NamesWhatItDoesNotUnderstandOnce) {
+TEST(GltfReader, WarnsOnceAboutEachUnsupportedPart) {
     const Scene scene = read("unknown.gltf");
-    EXPECT_TRUE(warns(scene, "extension \"ACME_sparkles\" is not understood"));
-    EXPECT_TRUE(warns(scene, "motion's \"wobble\" is not understood (2 times)"));
-    EXPECT_TRUE(warns(scene, "shape type \"torus\" is not understood"));
-    EXPECT_TRUE(warns(scene, "colliders without a shape that is understood are left out (2 times)"));
+    EXPECT_TRUE(warns(scene, "extension \"ACME_sparkles\" is not supported"));
+    EXPECT_TRUE(warns(scene, "motion's \"wobble\" is not supported (2 times)"));
+    EXPECT_TRUE(warns(scene, "shape type \"torus\" is not supported"));
+    EXPECT_TRUE(warns(scene, "colliders without a supported shape are skipped (2 times)"));
     EXPECT_TRUE(warns(scene, "animations are not played"));
     for (std::size_t i = 1; i < scene.warnings.size(); ++i) EXPECT_NE(scene.warnings[i - 1], scene.warnings[i]);
 }
 
-TEST(GltfReader, RefusesAFileThatRequiresMore) {
+TEST(GltfReader, RefusesAFileWithAnUnsupportedRequiredExtension) {
     const auto scene = test::read_text(
         R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"]})");
     ASSERT_FALSE(scene);

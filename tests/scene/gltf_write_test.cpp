@@ -1,4 +1,4 @@
-/// Tests of written scenes: read again they are the same; another reader understands them.
+/// Tests of written scenes: they read back as the same scene, and tinygltf accepts them.
 #include "fase/scene/gltf_write.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 namespace fase::scene {
 namespace {
 
-/// A scene that uses every field that files keep.
-Scene everything() {
+/// A scene that uses every stored field.
+Scene scene_with_all_fields() {
     Scene scene;
     scene.name = "all \"fields\"";
     scene.gravity = {0.5f, -3.7f, 0};
@@ -100,7 +100,7 @@ void expect_equal_visuals(const Scene& a, const Scene& b, std::vector<Visual> of
     }
 }
 
-/// The same vertices, in any order.
+/// Hulls: expects the same vertices, in any order.
 void expect_equal_shapes(const Shape& a, const Shape& b) {
     ASSERT_EQ(a.index(), b.index());
     const auto* hull_a = std::get_if<ConvexHull>(&a);
@@ -161,7 +161,7 @@ void expect_equal(const Scene& a, const Scene& b) {
 }
 
 TEST(WrittenGltf, ReadsBackAsTheSameScene) {
-    const Scene scene = everything();
+    const Scene scene = scene_with_all_fields();
     for (const GltfForm form : {GltfForm::Text, GltfForm::Binary}) {
         const auto bytes = gltf_bytes(scene, form);
         ASSERT_TRUE(bytes) << bytes.error().text();
@@ -172,7 +172,7 @@ TEST(WrittenGltf, ReadsBackAsTheSameScene) {
     }
 }
 
-TEST(WrittenGltf, GeneratedScenesReadBackAsTheyWere) {
+TEST(WrittenGltf, GeneratedScenesReadBackUnchanged) {
     for (const Generator& kind : generators()) {
         SCOPED_TRACE(kind.name);
         const Scene scene = *generate(kind.name, {.count = 200});
@@ -183,8 +183,8 @@ TEST(WrittenGltf, GeneratedScenesReadBackAsTheyWere) {
     }
 }
 
-TEST(WrittenGltf, IsUnderstoodByTinygltf) {
-    const Scene scene = everything();
+TEST(WrittenGltf, IsAcceptedByTinygltf) {
+    const Scene scene = scene_with_all_fields();
     tinygltf::TinyGLTF loader;
     tinygltf::Model model;
     std::string error, warning;
@@ -204,11 +204,13 @@ TEST(WrittenGltf, IsUnderstoodByTinygltf) {
 }
 
 TEST(WrittenGltf, EqualScenesGiveEqualBytes) {
-    EXPECT_EQ(*gltf_bytes(everything(), GltfForm::Binary), *gltf_bytes(everything(), GltfForm::Binary));
+    EXPECT_EQ(*gltf_bytes(scene_with_all_fields(), GltfForm::Binary),
+              *gltf_bytes(scene_with_all_fields(), GltfForm::Binary));
 }
 
-TEST(WrittenGltf, RefusesScenesThatDoNotHoldTogether) {
-    Scene shape = everything(), mesh = everything(), number = everything(), index = everything();
+TEST(WrittenGltf, RefusesInconsistentScenes) {
+    Scene shape = scene_with_all_fields(), mesh = scene_with_all_fields(), number = scene_with_all_fields(),
+          index = scene_with_all_fields();
     shape.bodies[0].colliders[0].shape = 99;
     EXPECT_EQ(gltf_bytes(shape, GltfForm::Text).status(), Status::OutOfRange);
     mesh.scenery[0].mesh = 99;
@@ -217,17 +219,17 @@ TEST(WrittenGltf, RefusesScenesThatDoNotHoldTogether) {
     EXPECT_EQ(gltf_bytes(index, GltfForm::Text).status(), Status::OutOfRange);
     number.bodies[1].def.position.x = std::numeric_limits<double>::infinity();
     EXPECT_EQ(gltf_bytes(number, GltfForm::Text).status(), Status::BadArgument);
-    number = everything();
+    number = scene_with_all_fields();
     number.bodies[1].def.linear_damping = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(gltf_bytes(number, GltfForm::Text).status(), Status::BadArgument);
-    mesh = everything();
+    mesh = scene_with_all_fields();
     mesh.meshes[0] = {};
     EXPECT_EQ(gltf_bytes(mesh, GltfForm::Text).status(), Status::BadArgument);
 }
 
-TEST(WrittenGltf, TakesItsFormFromTheEnding) {
+TEST(WrittenGltf, TheExtensionSelectsTheForm) {
     const test::TemporaryFolder folder;
-    const Scene scene = everything();
+    const Scene scene = scene_with_all_fields();
     ASSERT_TRUE(write_gltf(scene, folder / "a.glb"));
     ASSERT_TRUE(write_gltf(scene, folder / "a.gltf"));
     EXPECT_EQ(test::content_of(folder / "a.glb").substr(0, 4), "glTF");
@@ -236,7 +238,7 @@ TEST(WrittenGltf, TakesItsFormFromTheEnding) {
     EXPECT_EQ(write_gltf(scene, folder / "none/a.glb").status(), Status::Io);
 }
 
-TEST(WrittenGltf, AnEmptySceneIsAFileToo) {
+TEST(WrittenGltf, AnEmptySceneGivesAValidFile) {
     const auto back = test::read_text(*gltf_bytes({}, GltfForm::Binary));
     ASSERT_TRUE(back) << back.error().text();
     EXPECT_TRUE(back->bodies.empty());

@@ -25,7 +25,7 @@ TEST(Obj, ReadsCornersAndFaces) {
     EXPECT_EQ(mesh->indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
 }
 
-/// Sum of the triangles' vectors of surface, and of their sizes.
+/// Sum of the triangles' area vectors, and of their areas.
 std::pair<Vec3, float> surface(const TriangleMesh& mesh) {
     Vec3 sum{};
     float size = 0;
@@ -39,14 +39,14 @@ std::pair<Vec3, float> surface(const TriangleMesh& mesh) {
     return {sum, size};
 }
 
-TEST(Obj, CutsFacesOfMoreCornersIntoTriangles) {
+TEST(Obj, TriangulatesFacesOfMoreCorners) {
     const auto mesh = parsed(std::string(corners) + "f 1 2 3 4");
     ASSERT_TRUE(mesh);
     EXPECT_EQ(mesh->indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
 }
 
-TEST(Obj, CutsConcaveFacesWithoutGoingOutside) {
-    // A comb with three teeth, in each of the three planes, both ways round.
+TEST(Obj, TriangulatesConcaveFacesInsideTheirOutline) {
+    // A comb with three teeth, in each of the three coordinate planes, in both orientations.
     constexpr float comb[][2] = {{0, 0}, {5, 0}, {5, 3}, {4, 3}, {4, 1}, {3, 1},
                                  {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
     for (int axis = 0; axis < 3; ++axis) {
@@ -69,34 +69,35 @@ TEST(Obj, CutsConcaveFacesWithoutGoingOutside) {
     }
 }
 
-TEST(Obj, KeepsFacesThatCrossThemselves) {
+TEST(Obj, KeepsSelfIntersectingFaces) {
     const auto mesh = parsed(std::string(corners) + "f 1 3 2 4\nf 1 1 1 1 1\n");
     ASSERT_TRUE(mesh);
     EXPECT_EQ(mesh->indices.size(), 15u);
 }
 
-TEST(Obj, UnderstandsLinesThatGoOnAndEndsOfDos) {
+TEST(Obj, ReadsContinuedLinesAndDosLineEnds) {
     const auto mesh = parsed("v 0 0 0\r\nv 1 \\\r\n 0 0\r\nv 0 +1 1e-3\r\nf 1 2 \\\n3\r\n");
     ASSERT_TRUE(mesh) << mesh.error().text();
     EXPECT_EQ(mesh->indices.size(), 3u);
     EXPECT_EQ(mesh->positions[1], (Vec3{1, 0, 0}));
 }
 
-TEST(Obj, NamesTheLineOfAMistake) {
-    EXPECT_EQ(refusal("v 0 0\n"), "x.obj:1: found nothing as a coordinate, need a number that a float can hold");
+TEST(Obj, NamesTheLineOfAnError) {
+    EXPECT_EQ(refusal("v 0 0\n"), "x.obj:1: found nothing as a coordinate; expected a number in the range of float");
     EXPECT_EQ(refusal("\nv 0 0 1e99\n"),
-              "x.obj:2: found \"1e99\" as a coordinate, need a number that a float can hold");
-    EXPECT_EQ(refusal("v 0 0 nan\n"), "x.obj:1: found \"nan\" as a coordinate, need a number that a float can hold");
+              "x.obj:2: found \"1e99\" as a coordinate; expected a number in the range of float");
+    EXPECT_EQ(refusal("v 0 0 nan\n"),
+              "x.obj:1: found \"nan\" as a coordinate; expected a number in the range of float");
     EXPECT_EQ(refusal(std::string(corners) + "f 1 2 5\n"),
-              "x.obj:5: found corner 5, need one of the 4 before this line");
+              "x.obj:5: found corner 5; expected one of the 4 before this line");
     EXPECT_EQ(refusal(std::string(corners) + "f 1 2 0\n"),
-              "x.obj:5: found corner 0, need one of the 4 before this line");
+              "x.obj:5: found corner 0; expected one of the 4 before this line");
     EXPECT_EQ(refusal(std::string(corners) + "f -5 2 1\n"),
-              "x.obj:5: found corner -5, need one of the 4 before this line");
-    EXPECT_EQ(refusal(std::string(corners) + "f 1 2\n"), "x.obj:5: found a face of 2 corners, need at least 3");
+              "x.obj:5: found corner -5; expected one of the 4 before this line");
+    EXPECT_EQ(refusal(std::string(corners) + "f 1 2\n"), "x.obj:5: found a face of 2 corners; expected at least 3");
     EXPECT_EQ(refusal(std::string(corners) + "f 1 b 3\n"),
-              "x.obj:5: found \"b\" as a corner of a face, need its number");
-    EXPECT_EQ(refusal(std::string("v 0\0 0", 6)), "x.obj:3: found a byte 0, need text");
+              "x.obj:5: found \"b\" as a corner of a face; expected a vertex number");
+    EXPECT_EQ(refusal(std::string("v 0\0 0", 6)), "x.obj:3: found a NUL byte; expected text");
 }
 
 TEST(Obj, SurvivesEveryTruncationAndFlippedBit) {
@@ -117,7 +118,7 @@ TEST(Obj, SurvivesEveryTruncationAndFlippedBit) {
     }
 }
 
-TEST(Obj, ReadsTheMeshesGiven) {
+TEST(Obj, ReadsTheSharedMeshes) {
     const auto folder = std::filesystem::path(FASE_SHARED_DATA) / "meshes";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no meshes in " << FASE_SHARED_DATA;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -128,7 +129,7 @@ TEST(Obj, ReadsTheMeshesGiven) {
     }
 }
 
-TEST(Obj, RefusesWhatIsNoFile) {
+TEST(Obj, RefusesMissingFilesAndFolders) {
     EXPECT_EQ(read_obj("/nowhere/x.obj").status(), Status::Io);
     EXPECT_EQ(read_obj(".").status(), Status::Format);
 }

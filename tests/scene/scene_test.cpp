@@ -1,4 +1,4 @@
-/// Tests of worlds that are filled from scenes.
+/// Tests of filling worlds from scenes.
 #include "fase/scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace fase::scene {
 namespace {
 
-TEST(Instantiate, MakesEveryBodyInOrder) {
+TEST(Instantiate, AddsEveryBodyInOrder) {
     const Scene scene = *generate("pile", {.count = 20});
     World world = *World::create(settings_for(scene));
     const auto ids = instantiate(scene, world);
@@ -24,7 +24,7 @@ TEST(Instantiate, MakesEveryBodyInOrder) {
     }
 }
 
-TEST(Instantiate, RefusedLeavesTheWorldAsItWas) {
+TEST(Instantiate, ARefusalLeavesTheWorldUnchanged) {
     Scene scene = *generate("pile", {.count = 20});
     World world = *World::create();
     ASSERT_TRUE(world.add_body({}, Sphere{1}));
@@ -41,7 +41,7 @@ TEST(Instantiate, RefusedLeavesTheWorldAsItWas) {
     EXPECT_EQ(world.hash(), before);
 }
 
-TEST(Instantiate, KeepsSleepersAsleep) {
+TEST(Instantiate, KeepsSleepingBodiesAsleep) {
     const Scene scene = *generate("sleepers", {.count = 50});
     World world = *World::create(settings_for(scene));
     const auto ids = instantiate(scene, world);
@@ -54,7 +54,7 @@ TEST(Instantiate, KeepsSleepersAsleep) {
     EXPECT_EQ(asleep, 50u);
 }
 
-TEST(Instantiate, ExcludesPairsThatAJointHolds) {
+TEST(Instantiate, ExcludesPairsConnectedByAJoint) {
     const Result<Scene> scene = read_gltf(test::fixture("joints.gltf"));
     ASSERT_TRUE(scene);
     World world = *World::create();

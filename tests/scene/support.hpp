@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of scenes share: fixtures, texts as files, a look for bodies by name.
+/// Shared by the tests of scenes: fixtures, files from text, lookup of bodies by name.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -28,7 +28,7 @@ inline std::string content_of(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// A folder that goes away with the test.
+/// A temporary folder; the destructor removes it.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
@@ -49,32 +49,32 @@ inline void write_text(const std::string& path, std::string_view text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// A glTF text read as if it were a file of no folder.
+/// Reads a glTF text like a file in `folder`.
 inline Result<Scene> read_text(std::string_view text, const std::string& folder = "/nonexistent") {
     return read_gltf(bytes_of(text), folder, "test.gltf");
 }
 
-/// The body of that name; fails the test when there is none.
+/// Returns the body of that name; fails the test if it is missing.
 inline const Body& body_named(const Scene& scene, std::string_view name) {
     for (const Body& body : scene.bodies) {
         if (body.name == name) return body;
     }
     ADD_FAILURE() << "no body is called " << name;
-    static const Body nobody;
-    return nobody;
+    static const Body empty;
+    return empty;
 }
 
-/// The shape of a body's collider, as one of its kinds; fails the test when it is another.
+/// Returns the shape of a body's collider as an S; fails the test if it is another kind.
 template <class S> const S& shape_of(const Scene& scene, const Body& body, std::size_t collider = 0) {
-    static const S nothing{};
+    static const S empty{};
     if (collider >= body.colliders.size()) {
         ADD_FAILURE() << body.name << " has no collider " << collider;
-        return nothing;
+        return empty;
     }
     const S* shape = std::get_if<S>(&scene.shapes[body.colliders[collider].shape]);
     if (shape == nullptr) {
         ADD_FAILURE() << body.name << " has a " << name_of(scene.shapes[body.colliders[collider].shape]);
-        return nothing;
+        return empty;
     }
     return *shape;
 }

@@ -7,8 +7,8 @@
 namespace fase::atlas {
 namespace {
 
-/// What a leaf costs a rectangle that fits into it: the lower, the better. 0 only for a rectangle that fills it, except
-/// under Upper.
+/// Returns the cost of placing a rectangle in a leaf that it fits; the lowest is best. Except for Upper, 0 means that
+/// it fills the leaf exactly.
 std::int64_t cost_of(const Area& leaf, Size size, LeafRule rule) {
     const int beside = leaf.width - size.width, below = leaf.height - size.height;
     switch (rule) {
@@ -20,7 +20,7 @@ std::int64_t cost_of(const Area& leaf, Size size, LeafRule rule) {
     return 0;
 }
 
-/// Whether the line between both rests runs along x = const, the whole height of the leaf.
+/// Returns whether the leaf is split first at x = const, over its whole height.
 bool cuts_at_x(const Area& leaf, Size size, SplitRule rule) {
     const int beside = leaf.width - size.width, below = leaf.height - size.height;
     switch (rule) {
@@ -44,43 +44,43 @@ void KdTree::clear(Size page) {
     free_ = area_of(page);
 }
 
-std::optional<KdTree::Found> KdTree::best_leaf(Size size, bool may_turn, LeafRule rule) {
-    const Size turned{size.height, size.width};
+std::optional<KdTree::Found> KdTree::best_leaf(Size size, bool may_rotate, LeafRule rule) {
+    const Size rotated{size.height, size.width};
     const auto fits = [](const Node& node, Size one) {
         return node.free_width >= one.width && node.free_height >= one.height;
     };
-    may_turn = may_turn && size.width != size.height;
+    may_rotate = may_rotate && size.width != size.height;
     std::optional<Found> best;
-    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    std::int64_t lowest = std::numeric_limits<std::int64_t>::max();
     stack_.assign(1, 0);
     while (!stack_.empty()) {
         const std::uint32_t at = stack_.back();
         stack_.pop_back();
         const Node& node = nodes_[at];
-        const bool upright = fits(node, size), lying = may_turn && fits(node, turned);
-        if (!upright && !lying) continue;
+        const bool upright = fits(node, size), sideways = may_rotate && fits(node, rotated);
+        if (!upright && !sideways) continue;
         if (node.child != 0) {
             stack_.push_back(node.child + 1);
             stack_.push_back(node.child);
             continue;
         }
-        for (const bool turn : {false, true}) {
-            if (turn ? !lying : !upright) continue;
-            const std::int64_t cost = cost_of(node.area, turn ? turned : size, rule);
-            if (cost >= least) continue;
-            least = cost;
-            best = Found{at, turn};
+        for (const bool rotate : {false, true}) {
+            if (rotate ? !sideways : !upright) continue;
+            const std::int64_t cost = cost_of(node.area, rotate ? rotated : size, rule);
+            if (cost >= lowest) continue;
+            lowest = cost;
+            best = Found{at, rotate};
         }
-        if (least == 0) break;
+        if (lowest == 0) break;
     }
     return best;
 }
 
-std::optional<Area> KdTree::insert(Size size, bool may_turn, LeafRule leaf_rule, SplitRule split_rule) {
+std::optional<Area> KdTree::insert(Size size, bool may_rotate, LeafRule leaf_rule, SplitRule split_rule) {
     if (size.width <= 0 || size.height <= 0) return std::nullopt;
-    const std::optional<Found> found = best_leaf(size, may_turn, leaf_rule);
+    const std::optional<Found> found = best_leaf(size, may_rotate, leaf_rule);
     if (!found) return std::nullopt;
-    if (found->turned) std::swap(size.width, size.height);
+    if (found->rotated) std::swap(size.width, size.height);
     std::uint32_t leaf = found->leaf;
     const Area place = nodes_[leaf].area;
     const bool first_at_x = cuts_at_x(place, size, split_rule);
@@ -90,8 +90,8 @@ std::optional<Area> KdTree::insert(Size size, bool may_turn, LeafRule leaf_rule,
         split(leaf, at_x, at_x ? place.x + size.width : place.y + size.height);
         leaf = nodes_[leaf].child;
     }
-    take(leaf);
-    refit(nodes_[leaf].parent);
+    occupy_leaf(leaf);
+    update_ancestors(nodes_[leaf].parent);
     return Area{place.x, place.y, size.width, size.height};
 }
 
@@ -112,13 +112,13 @@ void KdTree::split(std::uint32_t node, bool at_x, int line) {
     nodes_.push_back({after, after.width, after.height, 0, node});
 }
 
-void KdTree::take(std::uint32_t leaf) {
+void KdTree::occupy_leaf(std::uint32_t leaf) {
     Node& node = nodes_[leaf];
     free_ -= area_of({node.area.width, node.area.height});
     node.free_width = node.free_height = 0;
 }
 
-void KdTree::refit(std::uint32_t node) {
+void KdTree::update_ancestors(std::uint32_t node) {
     while (nodes_[node].child != 0) {
         const Node& first = nodes_[nodes_[node].child];
         const Node& second = nodes_[nodes_[node].child + 1];
@@ -128,7 +128,8 @@ void KdTree::refit(std::uint32_t node) {
         nodes_[node].free_width = width;
         nodes_[node].free_height = height;
         if (node == 0) break;
-        // Freshly split nodes hold values of their own, so only what lies above them can be known to be right.
+        // Unchanged values: the ancestors are up to date. A freshly split node never stops here, because both children
+        // are smaller than it along the cut.
         if (same) break;
         node = nodes_[node].parent;
     }
@@ -136,25 +137,25 @@ void KdTree::refit(std::uint32_t node) {
 
 void KdTree::occupy(const Area& area) {
     if (area.width <= 0 || area.height <= 0) return;
-    std::vector<std::uint32_t> to_do{0};
-    while (!to_do.empty()) {
-        const std::uint32_t at = to_do.back();
-        to_do.pop_back();
+    std::vector<std::uint32_t> pending{0};
+    while (!pending.empty()) {
+        const std::uint32_t at = pending.back();
+        pending.pop_back();
         const Node node = nodes_[at];
         if (node.free_width == 0 || !overlaps(node.area, area)) continue;
         if (node.child != 0) {
-            to_do.push_back(node.child);
-            to_do.push_back(node.child + 1);
+            pending.push_back(node.child);
+            pending.push_back(node.child + 1);
             continue;
         }
         const Area& leaf = node.area;
-        // Cut off what lies beside the area, the widest rest first, until the leaf lies in it.
+        // Cut off the parts outside the area, the widest first, until the leaf is inside the area.
         const int left = area.x - leaf.x, right = leaf.x + leaf.width - area.x - area.width;
         const int above = area.y - leaf.y, under = leaf.y + leaf.height - area.y - area.height;
         const int most = std::max({left, right, above, under});
         if (most <= 0) {
-            take(at);
-            if (at != 0) refit(node.parent);
+            occupy_leaf(at);
+            if (at != 0) update_ancestors(node.parent);
             continue;
         }
         if (most == left || most == right) {
@@ -162,24 +163,24 @@ void KdTree::occupy(const Area& area) {
         } else {
             split(at, false, most == above ? area.y : area.y + area.height);
         }
-        to_do.push_back(nodes_[at].child);
-        to_do.push_back(nodes_[at].child + 1);
+        pending.push_back(nodes_[at].child);
+        pending.push_back(nodes_[at].child + 1);
     }
 }
 
 std::vector<Area> KdTree::free_areas() const {
     std::vector<Area> out;
-    std::vector<std::uint32_t> to_do{0};
-    while (!to_do.empty()) {
-        const Node& node = nodes_[to_do.back()];
-        to_do.pop_back();
+    std::vector<std::uint32_t> pending{0};
+    while (!pending.empty()) {
+        const Node& node = nodes_[pending.back()];
+        pending.pop_back();
         if (node.free_width == 0) continue;
         if (node.child == 0) {
             out.push_back(node.area);
             continue;
         }
-        to_do.push_back(node.child + 1);
-        to_do.push_back(node.child);
+        pending.push_back(node.child + 1);
+        pending.push_back(node.child);
     }
     return out;
 }

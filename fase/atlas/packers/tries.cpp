@@ -1,4 +1,4 @@
-/// The list of rules that a packing goes through, and what one of them makes of a page.
+/// The list of rules that a packing tries, and the filling of a page by one of them.
 #include "fase/atlas/packers/tries.hpp"
 
 #include <fmt/format.h>
@@ -13,8 +13,8 @@ namespace fase::atlas {
 namespace {
 
 constexpr std::uint32_t skyline_rules = order_rules * 2 * 2 * 4, tree_rules = order_rules * 4 * 4;
-/// A kD-tree has its turn once in so many tries.
-constexpr std::uint32_t tree_turn = 32;
+/// One try in this many uses a kD-tree.
+constexpr std::uint32_t tree_period = 32;
 
 constexpr const char* order_names[] = {"area", "long side", "short side", "sum of sides", "diagonal", "cubes of sides"};
 constexpr const char* side_names[] = {"left", "higher wall", "lower wall", "nearer height"};
@@ -25,13 +25,13 @@ TryRules skyline_rules_of(std::uint32_t number) {
     TryRules rules;
     rules.shuffle = number / skyline_rules;
     std::uint32_t n = number % skyline_rules;
-    // Rules that share an order follow one another: the rectangles are sorted once for all of them.
+    // Rules with the same order are adjacent, so that the rectangles are sorted once for all of them.
     rules.skyline.side =
         std::array{GapSide::Left, GapSide::HigherWall, GapSide::NearerHeight, GapSide::LowerWall}[n % 4];
     n /= 4;
     rules.skyline.widest_last = n % 2 == 0;
     n /= 2;
-    rules.lying_first = n % 2 == 1;
+    rules.landscape_first = n % 2 == 1;
     n /= 2;
     rules.order = static_cast<OrderRule>(n);
     return rules;
@@ -70,30 +70,31 @@ std::uint64_t key_of(Kind kind, OrderRule rule) {
 std::string text_of(const TryRules& rules) {
     const auto name = [](const char* const* names, auto rule) { return names[static_cast<std::size_t>(rule)]; };
     std::string text =
-        rules.kd_tree ? fmt::format("kd_tree by {}, leaf {}, split at {}", name(order_names, rules.order),
-                                    name(leaf_names, rules.leaf), name(split_names, rules.split))
-                      : fmt::format("skyline by {}, {} first, gap {}", name(order_names, rules.order),
-                                    rules.lying_first ? "lying" : "standing", name(side_names, rules.skyline.side));
-    if (rules.shuffle > 0) text += fmt::format(", disorder {}", rules.shuffle);
+        rules.kd_tree
+            ? fmt::format("kd_tree by {}, leaf {}, split at {}", name(order_names, rules.order),
+                          name(leaf_names, rules.leaf), name(split_names, rules.split))
+            : fmt::format("skyline by {}, {} first, gap {}", name(order_names, rules.order),
+                          rules.landscape_first ? "landscape" : "portrait", name(side_names, rules.skyline.side));
+    if (rules.shuffle > 0) text += fmt::format(", variation {}", rules.shuffle);
     return text;
 }
 
 TryRules rules_of(std::uint32_t number, Method method) {
     if (method == Method::KdTree) return tree_rules_of(number);
     if (method == Method::Skyline) return skyline_rules_of(number);
-    const std::uint32_t turn = number / tree_turn;
-    return number % tree_turn == tree_turn - 1 ? tree_rules_of(turn) : skyline_rules_of(number - turn);
+    const std::uint32_t period = number / tree_period;
+    return number % tree_period == tree_period - 1 ? tree_rules_of(period) : skyline_rules_of(number - period);
 }
 
-TryBench::TryBench(std::vector<Kind> kinds, bool may_turn) : kinds_(std::move(kinds)), may_turn_(may_turn) {}
+PageFiller::PageFiller(std::vector<Kind> kinds, bool may_rotate) : kinds_(std::move(kinds)), may_rotate_(may_rotate) {}
 
-void TryBench::sort(const TryRules& rules) {
+void PageFiller::sort(const TryRules& rules) {
     keys_.resize(kinds_.size());
-    const Random disorder(rules.shuffle, static_cast<std::uint64_t>(rules.order));
+    const Random variation(rules.shuffle, static_cast<std::uint64_t>(rules.order));
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
         keys_[i] = key_of(kinds_[i], rules.order);
-        // Keys are below 2^51: a 1024th of one times 0 to 127 cannot overflow.
-        if (rules.shuffle > 0) keys_[i] += (keys_[i] >> 10) * (disorder.at(i) >> 57);
+        // Keys are below 2^51, so adding 0 to 127 times a 1024th of one cannot overflow.
+        if (rules.shuffle > 0) keys_[i] += (keys_[i] >> 10) * (variation.at(i) >> 57);
     }
     order_.resize(kinds_.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -101,30 +102,31 @@ void TryBench::sort(const TryRules& rules) {
               [&](std::uint32_t a, std::uint32_t b) { return keys_[a] != keys_[b] ? keys_[a] > keys_[b] : a < b; });
 }
 
-std::int64_t TryBench::fill(const TryRules& rules, Size page, std::span<const std::uint32_t> counts,
-                            std::int64_t max_lost, std::vector<Laid>& out) {
-    const auto preparation = std::tuple(static_cast<int>(rules.order), rules.shuffle, rules.kd_tree, rules.lying_first);
+std::int64_t PageFiller::fill(const TryRules& rules, Size page, std::span<const std::uint32_t> counts,
+                              std::int64_t max_lost, std::vector<PlacedKind>& out) {
+    const auto preparation =
+        std::tuple(static_cast<int>(rules.order), rules.shuffle, rules.kd_tree, rules.landscape_first);
     if (preparation != prepared_) {
         sort(rules);
-        if (!rules.kd_tree) skyline_.prepare(kinds_, order_, may_turn_, rules.lying_first);
+        if (!rules.kd_tree) skyline_.prepare(kinds_, order_, may_rotate_, rules.landscape_first);
         prepared_ = preparation;
     }
     return rules.kd_tree ? fill_tree(rules, page, counts, max_lost, out)
                          : skyline_.fill(page, counts, rules.skyline, max_lost, out);
 }
 
-std::int64_t TryBench::fill_tree(const TryRules& rules, Size page, std::span<const std::uint32_t> counts,
-                                 std::int64_t max_lost, std::vector<Laid>& out) {
+std::int64_t PageFiller::fill_tree(const TryRules& rules, Size page, std::span<const std::uint32_t> counts,
+                                   std::int64_t max_lost, std::vector<PlacedKind>& out) {
     out.clear();
     tree_.clear(page);
     std::int64_t left = 0;
     for (std::size_t i = 0; i < kinds_.size(); ++i) left += area_of(kinds_[i]) * counts[i];
-    // What is left over is lost as page: no kind is tried again once the page is known not to hold all.
+    // With a limit, everything must fit: stop at the first kind that does not.
     const std::int64_t max_left = max_lost >= area_of(page) ? left : 0;
     std::int64_t refused = 0;
     for (const std::uint32_t kind : order_) {
         for (std::uint32_t n = 0; n < counts[kind]; ++n) {
-            const auto place = tree_.insert(kinds_[kind], may_turn_, rules.leaf, rules.split);
+            const auto place = tree_.insert(kinds_[kind], may_rotate_, rules.leaf, rules.split);
             if (!place) {
                 refused += area_of(kinds_[kind]) * (counts[kind] - n);
                 break;

@@ -1,4 +1,4 @@
-/// BLOCKMAP: a grid of lists, equal lists shared.
+/// Builds a BLOCKMAP: a grid of lists of lines, in which equal lists are shared.
 #include <algorithm>
 #include <map>
 
@@ -28,7 +28,7 @@ std::vector<std::byte> make_blockmap(const Map& map) {
              ++row) {
             for (std::int32_t column = (std::min(a.x, b.x) - west) / side; column <= (std::max(a.x, b.x) - west) / side;
                  ++column) {
-                bool left = false, right = false;  // corners of the cell
+                bool left = false, right = false;  // corners of the cell on either side of the line
                 for (const std::int32_t corner : {0, 1, 2, 3}) {
                     const std::int64_t x = west + (column + (corner & 1)) * side, y = south + (row + corner / 2) * side;
                     const std::int64_t value = dx * (y - a.y) - dy * (x - a.x);
@@ -42,11 +42,11 @@ std::vector<std::byte> make_blockmap(const Map& map) {
     }
     std::vector<std::byte> out, lists;
     for (const std::int32_t value : {west, south, columns, rows}) append_i16(out, static_cast<std::int16_t>(value));
-    std::map<std::vector<std::uint16_t>, std::size_t> places;
+    std::map<std::vector<std::uint16_t>, std::size_t> offsets;
     for (const std::vector<std::uint16_t>& cell : cells) {
-        const auto [place, is_new] = places.try_emplace(cell, 4 + cells.size() + lists.size() / 2);
-        if (place->second > 0xffff) return {};
-        append_u16(out, static_cast<std::uint16_t>(place->second));
+        const auto [offset, is_new] = offsets.try_emplace(cell, 4 + cells.size() + lists.size() / 2);
+        if (offset->second > 0xffff) return {};
+        append_u16(out, static_cast<std::uint16_t>(offset->second));
         if (!is_new) continue;
         append_u16(lists, 0);
         for (const std::uint16_t line : cell) append_u16(lists, line);

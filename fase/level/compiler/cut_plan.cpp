@@ -1,4 +1,4 @@
-/// The lines of a map sorted into planes, the first step of the compiler.
+/// The first stage of the compiler: groups the lines of a map by plane.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -9,45 +9,44 @@
 namespace fase::level {
 namespace {
 
-/// The numbers that lines on the same plane share, whichever way they go.
+/// Equal for all lines on one plane, in either direction.
 struct PlaneKey {
     std::int64_t dx = 0, dy = 0, offset = 0;
     friend bool operator==(const PlaneKey&, const PlaneKey&) = default;
 };
 
-PlaneKey key_of(const ExactLine& line, bool& against) {
+PlaneKey key_of(const ExactLine& line, bool& opposite) {
     const std::int64_t common = std::gcd(line.dx, line.dy);
-    against = line.dx < 0 || (line.dx == 0 && line.dy < 0);
-    const std::int64_t divisor = against ? -common : common;
-    // An offset of dx * Y - dy * X with whole X and Y is divided without rest.
+    opposite = line.dx < 0 || (line.dx == 0 && line.dy < 0);
+    const std::int64_t divisor = opposite ? -common : common;
+    // The divisor divides the offset too: it is dx * Y - dy * X with integers X and Y.
     return {line.dx / divisor, line.dy / divisor, line.offset() / divisor};
 }
 
-/// Planes by key: a hash table with open addressing.
+/// Maps keys to planes: a hash table with open addressing.
 class PlaneTable {
 public:
     explicit PlaneTable(std::size_t lines) {
-        std::size_t places = 16;
-        while (places < 2 * lines) places *= 2;
-        places_.assign(places, Plan::no_plane);
+        std::size_t slots = 16;
+        while (slots < 2 * lines) slots *= 2;
+        slots_.assign(slots, no_index);
     }
     std::uint32_t index_of(const PlaneKey& key) {
         const auto word = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
-        std::size_t place =
+        std::size_t slot =
             mix_bits(word(key.dx) * 0x9e3779b97f4a7c15ull + word(key.dy) * 0xc2b2ae3d27d4eb4full + word(key.offset)) &
-            (places_.size() - 1);
-        while (places_[place] != Plan::no_plane && keys_[places_[place]] != key)
-            place = (place + 1) & (places_.size() - 1);
-        if (places_[place] == Plan::no_plane) {
-            places_[place] = static_cast<std::uint32_t>(keys_.size());
+            (slots_.size() - 1);
+        while (slots_[slot] != no_index && keys_[slots_[slot]] != key) slot = (slot + 1) & (slots_.size() - 1);
+        if (slots_[slot] == no_index) {
+            slots_[slot] = static_cast<std::uint32_t>(keys_.size());
             keys_.push_back(key);
         }
-        return places_[place];
+        return slots_[slot];
     }
 
 private:
     std::vector<PlaneKey> keys_;
-    std::vector<std::uint32_t> places_;
+    std::vector<std::uint32_t> slots_;
 };
 
 std::int64_t length2(const ExactLine& line) {
@@ -67,31 +66,31 @@ Plan make_plan(const Map& map, std::vector<Piece>& pieces) {
         north = std::max<std::int32_t>(north, v.y);
     }
     PlaneTable table(map.lines.size());
-    std::vector<std::uint8_t> plane_goes_back;
+    std::vector<std::uint8_t> plane_is_opposite;
     for (std::uint32_t i = 0; i < map.lines.size(); ++i) {
         const Line& line = map.lines[i];
         const Vertex from = map.vertices[line.from], to = map.vertices[line.to];
-        plan.plane_of_line.push_back(Plan::no_plane);
+        plan.plane_of_line.push_back(no_index);
         plan.against_plane.push_back(0);
         if (from == to) continue;
         const ExactLine exact{from.x, from.y, to.x - from.x, to.y - from.y};
-        bool goes_back = false;
-        const std::uint32_t plane = table.index_of(key_of(exact, goes_back));
+        bool opposite = false;
+        const std::uint32_t plane = table.index_of(key_of(exact, opposite));
         if (plane == plan.planes.size()) {
             plan.planes.push_back(exact);
-            plane_goes_back.push_back(goes_back ? 1 : 0);
+            plane_is_opposite.push_back(opposite ? 1 : 0);
         } else if (length2(exact) > length2(plan.planes[plane])) {
             plan.planes[plane] = exact;
-            plane_goes_back[plane] = goes_back ? 1 : 0;
+            plane_is_opposite[plane] = opposite ? 1 : 0;
         }
         plan.plane_of_line[i] = plane;
-        plan.against_plane[i] = goes_back ? 1 : 0;
+        plan.against_plane[i] = opposite ? 1 : 0;
         const auto sides = static_cast<std::uint8_t>((line.right != no_side ? right_side : 0) |
                                                      (line.left != no_side ? left_side : 0));
         if (sides != 0) pieces.push_back({plan.point_of_vertex[line.from], plan.point_of_vertex[line.to], i, sides});
     }
     for (std::uint32_t i = 0; i < map.lines.size(); ++i)
-        if (plan.plane_of_line[i] != Plan::no_plane) plan.against_plane[i] ^= plane_goes_back[plan.plane_of_line[i]];
+        if (plan.plane_of_line[i] != no_index) plan.against_plane[i] ^= plane_is_opposite[plan.plane_of_line[i]];
     plan.box_planes = static_cast<std::uint32_t>(plan.planes.size());
     constexpr std::int32_t margin = 8;
     plan.planes.push_back({west - margin, 0, 0, 1});

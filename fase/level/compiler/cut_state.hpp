@@ -1,5 +1,5 @@
 #pragma once
-/// What the steps of the compiler share: the lines of a plan, their pieces, and the tree while it is rough.
+/// Data shared by the stages of the compiler: the lines of a plan, their pieces, and the unfinished tree.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,24 +13,23 @@ namespace fase::level {
 /// Bits of Piece::sides.
 inline constexpr std::uint8_t right_side = 1, left_side = 2;
 
-/// A piece of a line of the map, with those of its sides that lie in a cell.
+/// A piece of a line of the map, with those of its sides that are in a cell.
 struct Piece {
     std::uint32_t a = 0, b = 0;  ///< points, in the line's direction
     std::uint32_t line = 0;
     std::uint8_t sides = 0;
 };
 
-/// The endless lines on which a map's lines lie, and its points. Lines over each other share a plane.
+/// The infinite lines ("planes") through a map's lines, and all points. Collinear lines share a plane.
 struct Plan {
-    static constexpr std::uint32_t no_plane = 0xffffffff;
     PlanPoints points;
     std::vector<std::uint32_t> point_of_vertex;
-    std::vector<ExactLine> planes;             ///< each in the direction of the longest line on it
-    std::vector<std::uint32_t> plane_of_line;  ///< no_plane: of zero length
-    std::vector<std::uint8_t> against_plane;   ///< by line: goes against the direction of its plane
-    std::uint32_t box_planes = 0;              ///< the first of four planes around the map, clockwise: west, north …
+    std::vector<ExactLine> planes;             ///< by plane, in the direction of its longest line
+    std::vector<std::uint32_t> plane_of_line;  ///< no_index: the line has zero length
+    std::vector<std::uint8_t> against_plane;   ///< by line: opposite to the direction of its plane
+    std::uint32_t box_planes = 0;              ///< the first of four planes around the map: west, north, east, south
 
-    /// The sides of a piece that its line's plane has on the right.
+    /// Returns the sides of a piece that are on the right of its plane.
     [[nodiscard]] std::uint8_t sides_right(const Piece& piece) const {
         return piece.sides & (against_plane[piece.line] != 0 ? left_side : right_side);
     }
@@ -39,38 +38,38 @@ struct Plan {
     }
 };
 
-/// The plan of a map, and a piece for each of its lines.
+/// Returns the plan of a map, and appends a piece for each of its lines.
 Plan make_plan(const Map& map, std::vector<Piece>& pieces);
 
-/// A corner of a cell and the edge that begins there, clockwise.
+/// A corner of a cell, and the edge from it to the next corner, clockwise.
 struct CellCorner {
     std::uint32_t point = 0, plane = 0;
-    std::uint32_t node = none;  ///< the node that made the edge; none: the box around the map, or a wall of the leaf
-    static constexpr std::uint32_t none = 0xffffffff;
+    /// The node that produced the edge; no_index: the box around the map, or a wall of the leaf.
+    std::uint32_t node = no_index;
 };
 
-/// A leaf while it is rough: its walls, and the convex cell that they and the partition lines leave.
+/// An unfinished leaf: its walls, and the convex cell inside them and the partition lines.
 struct RawLeaf {
     std::uint32_t first_piece = 0, pieces = 0, first_corner = 0, corners = 0;
     std::uint32_t depth = 0;
 };
 
-/// A node while it is rough; children as in Node, but nodes are numbered from the root on.
+/// An unfinished node; children as in Node, but with parents before children.
 struct RawNode {
     std::uint32_t plane = 0;
     std::uint32_t children[2] = {0, 0};
 };
 
-/// The tree before edges are laid out.
+/// The tree before its segs are made.
 struct RawTree {
     Plan plan;
     std::vector<RawNode> nodes;
     std::vector<RawLeaf> leaves;
-    std::vector<Piece> pieces;        ///< by leaf
-    std::vector<CellCorner> corners;  ///< by leaf
+    std::vector<Piece> pieces;        ///< grouped by leaf
+    std::vector<CellCorner> corners;  ///< grouped by leaf
 };
 
-/// Lays the walls on the edges of the cells, closes gaps with minisegs, and finds who is whose neighbour.
+/// Places the walls on the edges of the cells, fills gaps with minisegs, and links partners.
 LevelBsp lay_out(const Map& map, RawTree&& tree);
 
 }  // namespace fase::level

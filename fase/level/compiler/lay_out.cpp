@@ -1,4 +1,4 @@
-/// From rough leaves to sub-sectors: walls on edges, minisegs between them, partners, vertices, boxes.
+/// Makes sub-sectors from unfinished leaves: walls on edges, minisegs, partners, vertices, boxes.
 #include <algorithm>
 #include <cmath>
 
@@ -7,23 +7,21 @@
 namespace fase::level {
 namespace {
 
-constexpr std::uint32_t none = CellCorner::none;
-
-/// A stretch of a cell's outline, a wall or not, before neighbours ask for cuts.
-struct Stretch {
+/// A piece of a cell's outline, a wall or a miniseg, before it is split at the corners of neighbours.
+struct RawSeg {
     std::uint32_t from = 0, to = 0;  ///< points
-    std::uint32_t line = no_line;    ///< of the map
-    std::uint32_t node = none;       ///< on whose partition line it lies
-    std::uint32_t first_cut = 0;     ///< of `cut_points`: where neighbours have corners within it, in order
+    std::uint32_t line = no_index;   ///< of the map
+    std::uint32_t node = no_index;   ///< of the partition line that contains it
+    std::uint32_t first_cut = 0;     ///< index in `cut_points_`: corners of neighbours inside it, in order
     std::uint32_t cuts = 0;
     std::uint32_t first_seg = 0;
     std::uint32_t position = 0;  ///< of `from` among the points of its node
-    bool along = false;          ///< goes in the direction of its plane: lies on the right of it
-    bool left = false;           ///< which side of the line
+    bool along = false;          ///< in the direction of its plane, and on the right of it
+    bool left = false;           ///< on the left side of the line
 };
 
-/// The stretches of one leaf: those of the loop first.
-struct LeafStretches {
+/// The raw segs of one leaf: those of the loop, then the outliers.
+struct LeafSegs {
     std::uint32_t first = 0, edges = 0, outliers = 0;
 };
 
@@ -33,20 +31,20 @@ struct Wall {
     bool left = false;
 };
 
-/// Lays out one tree.
+/// Builds the LevelBsp of one tree.
 class Layout {
 public:
     Layout(const Map& map, const RawTree& tree) : map_(map), tree_(tree), points_(tree.plan.points) {}
 
-    LevelBsp work() {
-        for (const RawLeaf& leaf : tree_.leaves) add_stretches(leaf);
-        sort_by_node();
-        cut_where_neighbours_end();
-        name_vertices();
+    LevelBsp run() {
+        for (const RawLeaf& leaf : tree_.leaves) add_raw_segs(leaf);
+        group_by_node();
+        split_at_neighbour_corners();
+        add_map_vertices();
         add_segs();
-        join_partners();
+        link_partners();
         add_nodes();
-        count();
+        count_stats();
         return std::move(out_);
     }
 
@@ -55,31 +53,31 @@ private:
     const RawTree& tree_;
     const PlanPoints& points_;
     LevelBsp out_;
-    std::vector<Stretch> stretches_;
-    std::vector<LeafStretches> leaves_;
-    std::vector<Wall> walls_;                               ///< of the edge at hand
-    std::vector<std::uint32_t> by_node_, node_begin_;       ///< stretches, and where those of a node begin
-    std::vector<std::uint32_t> node_points_, point_begin_;  ///< in the order of the node's line
+    std::vector<RawSeg> raw_segs_;
+    std::vector<LeafSegs> leaves_;
+    std::vector<Wall> walls_;                               ///< of the current edge
+    std::vector<std::uint32_t> by_node_, node_begin_;       ///< raw segs grouped by node, and the start of each group
+    std::vector<std::uint32_t> node_points_, point_begin_;  ///< by node, in the order along its line
     std::vector<std::uint32_t> cut_points_;
     std::vector<std::uint32_t> vertex_of_point_;
 
     [[nodiscard]] const ExactLine& line_of(std::uint32_t plane) const { return tree_.plan.planes[plane]; }
 
-    void add_stretches(const RawLeaf& leaf) {
-        LeafStretches placed{static_cast<std::uint32_t>(stretches_.size()), 0, 0};
-        std::vector<Stretch> outliers;
+    void add_raw_segs(const RawLeaf& leaf) {
+        LeafSegs placed{static_cast<std::uint32_t>(raw_segs_.size()), 0, 0};
+        std::vector<RawSeg> outliers;
         for (std::uint32_t i = 0; i < leaf.corners; ++i) {
             const CellCorner& corner = tree_.corners[leaf.first_corner + i];
             const std::uint32_t end = tree_.corners[leaf.first_corner + (i + 1) % leaf.corners].point;
             add_edge(leaf, corner, end, outliers);
         }
-        placed.edges = static_cast<std::uint32_t>(stretches_.size()) - placed.first;
+        placed.edges = static_cast<std::uint32_t>(raw_segs_.size()) - placed.first;
         placed.outliers = static_cast<std::uint32_t>(outliers.size());
-        stretches_.insert(stretches_.end(), outliers.begin(), outliers.end());
+        raw_segs_.insert(raw_segs_.end(), outliers.begin(), outliers.end());
         leaves_.push_back(placed);
     }
 
-    void add_edge(const RawLeaf& leaf, const CellCorner& corner, std::uint32_t end, std::vector<Stretch>& outliers) {
+    void add_edge(const RawLeaf& leaf, const CellCorner& corner, std::uint32_t end, std::vector<RawSeg>& outliers) {
         const Plan& plan = tree_.plan;
         const ExactLine& line = line_of(corner.plane);
         const bool along = points_.order(line, corner.point, end) < 0;
@@ -98,54 +96,54 @@ private:
                 return a.from != b.from ? before(a.from, b.from) : a.line < b.line;
             });
         }
-        std::uint32_t at = corner.point;
-        const auto stretch = [&](std::uint32_t from, std::uint32_t to, std::uint32_t of_line, bool left) {
-            return Stretch{from, to, of_line, corner.node, 0, 0, 0, 0, along, left};
+        std::uint32_t reached = corner.point;
+        const auto raw_seg = [&](std::uint32_t from, std::uint32_t to, std::uint32_t of_line, bool left) {
+            return RawSeg{from, to, of_line, corner.node, 0, 0, 0, 0, along, left};
         };
         for (const Wall& wall : walls_) {
             std::uint32_t from = wall.from;
-            if (before(at, from)) {
-                stretches_.push_back(stretch(at, from, no_line, false));
-            } else if (from != at) {  // lies over the one before it
-                const bool whole = !before(at, wall.to);
-                outliers.push_back(stretch(from, whole ? wall.to : at, wall.line, wall.left));
-                if (whole) continue;
-                from = at;
+            if (before(reached, from)) {
+                raw_segs_.push_back(raw_seg(reached, from, no_index, false));
+            } else if (from != reached) {  // overlaps the previous wall
+                const bool covered = !before(reached, wall.to);
+                outliers.push_back(raw_seg(from, covered ? wall.to : reached, wall.line, wall.left));
+                if (covered) continue;
+                from = reached;
             }
-            stretches_.push_back(stretch(from, wall.to, wall.line, wall.left));
-            at = wall.to;
+            raw_segs_.push_back(raw_seg(from, wall.to, wall.line, wall.left));
+            reached = wall.to;
         }
-        if (at != end) stretches_.push_back(stretch(at, end, no_line, false));
+        if (reached != end) raw_segs_.push_back(raw_seg(reached, end, no_index, false));
     }
 
-    /// Lists of the edges on each node's line.
-    void sort_by_node() {
+    /// Groups the edges by the node whose line contains them.
+    void group_by_node() {
         node_begin_.assign(tree_.nodes.size() + 1, 0);
-        each_edge([&](const Stretch& s) {
-            if (s.node != none) ++node_begin_[s.node + 1];
+        each_edge([&](const RawSeg& s) {
+            if (s.node != no_index) ++node_begin_[s.node + 1];
         });
         for (std::size_t n = 0; n < tree_.nodes.size(); ++n) node_begin_[n + 1] += node_begin_[n];
         by_node_.resize(node_begin_.back());
         std::vector<std::uint32_t> next(node_begin_.begin(), node_begin_.end());
-        each_edge([&](const Stretch& s) {
-            if (s.node != none) by_node_[next[s.node]++] = static_cast<std::uint32_t>(&s - stretches_.data());
+        each_edge([&](const RawSeg& s) {
+            if (s.node != no_index) by_node_[next[s.node]++] = static_cast<std::uint32_t>(&s - raw_segs_.data());
         });
     }
     template <class Visit> void each_edge(Visit&& visit) const {
-        for (const LeafStretches& leaf : leaves_)
-            for (std::uint32_t i = 0; i < leaf.edges; ++i) visit(stretches_[leaf.first + i]);
+        for (const LeafSegs& leaf : leaves_)
+            for (std::uint32_t i = 0; i < leaf.edges; ++i) visit(raw_segs_[leaf.first + i]);
     }
 
-    /// Where cells on one side of a partition line have corners, edges on the other side are cut.
-    void cut_where_neighbours_end() {
+    /// Splits the edges on one side of a partition line at the corners of cells on the other side.
+    void split_at_neighbour_corners() {
         std::vector<std::uint32_t> position(points_.size());
         point_begin_.assign(1, 0);
         for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
             const ExactLine& line = line_of(tree_.nodes[n].plane);
             const auto first = static_cast<std::ptrdiff_t>(node_points_.size());
             for (std::uint32_t k = node_begin_[n]; k < node_begin_[n + 1]; ++k) {
-                node_points_.push_back(stretches_[by_node_[k]].from);
-                node_points_.push_back(stretches_[by_node_[k]].to);
+                node_points_.push_back(raw_segs_[by_node_[k]].from);
+                node_points_.push_back(raw_segs_[by_node_[k]].to);
             }
             std::sort(node_points_.begin() + first, node_points_.end(),
                       [&](std::uint32_t p, std::uint32_t q) { return points_.order(line, p, q) < 0; });
@@ -153,7 +151,7 @@ private:
             for (std::size_t i = static_cast<std::size_t>(first); i < node_points_.size(); ++i)
                 position[node_points_[i]] = static_cast<std::uint32_t>(i);
             for (std::uint32_t k = node_begin_[n]; k < node_begin_[n + 1]; ++k) {
-                Stretch& s = stretches_[by_node_[k]];
+                RawSeg& s = raw_segs_[by_node_[k]];
                 s.position = position[s.from];
                 s.first_cut = static_cast<std::uint32_t>(cut_points_.size());
                 const std::uint32_t to = position[s.to];
@@ -168,9 +166,9 @@ private:
         }
     }
 
-    /// The map's vertices keep their numbers; where two are on one point, the first stands for both.
-    void name_vertices() {
-        vertex_of_point_.assign(points_.size(), none);
+    /// Adds the map's vertices with the same indices; of two at one point, segs use the first.
+    void add_map_vertices() {
+        vertex_of_point_.assign(points_.size(), no_index);
         for (std::uint32_t v = 0; v < map_.vertices.size(); ++v) {
             out_.vertices.push_back({double(map_.vertices[v].x), double(map_.vertices[v].y)});
             std::uint32_t& vertex = vertex_of_point_[tree_.plan.point_of_vertex[v]];
@@ -180,32 +178,32 @@ private:
     }
     std::uint32_t vertex_of(std::uint32_t point) {
         std::uint32_t& vertex = vertex_of_point_[point];
-        if (vertex == none) {
+        if (vertex == no_index) {
             vertex = static_cast<std::uint32_t>(out_.vertices.size());
             out_.vertices.push_back(points_.rounded(point));
         }
         return vertex;
     }
 
-    [[nodiscard]] double offset_of(const Stretch& s, std::uint32_t vertex) const {
-        if (s.line == no_line) return 0;
+    [[nodiscard]] double offset_of(const RawSeg& s, std::uint32_t vertex) const {
+        if (s.line == no_index) return 0;
         const Line& line = map_.lines[s.line];
         const Point start = out_.vertices[s.left ? line.to : line.from], p = out_.vertices[vertex];
         return std::sqrt((p.x - start.x) * (p.x - start.x) + (p.y - start.y) * (p.y - start.y));
     }
 
     void add_segs() {
-        for (const LeafStretches& leaf : leaves_) {
+        for (const LeafSegs& leaf : leaves_) {
             const auto sub_sector = static_cast<std::uint32_t>(out_.sub_sectors.size());
             SubSector& placed = out_.sub_sectors.emplace_back();
             placed.first = static_cast<std::uint32_t>(out_.segs.size());
             for (std::uint32_t i = 0; i < leaf.edges + leaf.outliers; ++i) {
-                Stretch& s = stretches_[leaf.first + i];
+                RawSeg& s = raw_segs_[leaf.first + i];
                 s.first_seg = static_cast<std::uint32_t>(out_.segs.size());
                 std::uint32_t from = vertex_of(s.from);
                 for (std::uint32_t k = 0; k <= s.cuts; ++k) {
                     const std::uint32_t to = vertex_of(k < s.cuts ? cut_points_[s.first_cut + k] : s.to);
-                    out_.segs.push_back({from, to, s.line, no_seg, sub_sector, s.left, offset_of(s, from)});
+                    out_.segs.push_back({from, to, s.line, no_index, sub_sector, s.left, offset_of(s, from)});
                     from = to;
                 }
                 if (i + 1 == leaf.edges) placed.edges = static_cast<std::uint32_t>(out_.segs.size()) - placed.first;
@@ -215,14 +213,14 @@ private:
         }
     }
 
-    /// Most of the walls say so by their length; lines with one sector on both sides are asked last, for maps have them
-    /// where their sector is not.
+    /// Returns the sector with the greatest length of walls. Lines with one sector on both sides are used only if there
+    /// are no others, because maps have such lines outside their sector too.
     [[nodiscard]] std::uint32_t sector_of(const SubSector& placed) const {
         std::vector<std::pair<std::uint32_t, double>> shares;
         for (const bool last : {false, true}) {
             for (std::uint32_t i = 0; i < placed.edges + placed.outliers; ++i) {
                 const Seg& seg = out_.segs[placed.first + i];
-                if (seg.line == no_line) continue;
+                if (seg.line == no_index) continue;
                 const Line& line = map_.lines[seg.line];
                 const std::uint32_t sector = map_.sides[seg.left ? line.left : line.right].sector;
                 const std::uint16_t behind = seg.left ? line.right : line.left;
@@ -244,20 +242,20 @@ private:
             ->first;
     }
 
-    void join_partners() {
+    void link_partners() {
         std::vector<std::uint32_t> right, left;
         for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
             const std::uint32_t first = point_begin_[n], count = point_begin_[n + 1] - first;
             if (count == 0) continue;
-            right.assign(count, no_seg);
-            left.assign(count, no_seg);
+            right.assign(count, no_index);
+            left.assign(count, no_index);
             for (std::uint32_t k = node_begin_[n]; k < node_begin_[n + 1]; ++k) {
-                const Stretch& s = stretches_[by_node_[k]];
+                const RawSeg& s = raw_segs_[by_node_[k]];
                 for (std::uint32_t i = 0; i <= s.cuts; ++i)
                     (s.along ? right[s.position - first + i] : left[s.position - first - 1 - i]) = s.first_seg + i;
             }
             for (std::uint32_t i = 0; i < count; ++i) {
-                if (right[i] == no_seg || left[i] == no_seg) continue;
+                if (right[i] == no_index || left[i] == no_index) continue;
                 out_.segs[right[i]].partner = left[i];
                 out_.segs[left[i]].partner = right[i];
             }
@@ -290,7 +288,7 @@ private:
         }
     }
 
-    void count() {
+    void count_stats() {
         BspStats& stats = out_.stats;
         for (const Line& line : map_.lines) {
             if (map_.vertices[line.from] == map_.vertices[line.to]) continue;
@@ -299,7 +297,7 @@ private:
         }
         stats.wall_segs = tree_.pieces.size();
         stats.splits = stats.wall_segs - stats.sides;
-        for (const Seg& seg : out_.segs) stats.minisegs += seg.line == no_line ? 1 : 0;
+        for (const Seg& seg : out_.segs) stats.minisegs += seg.line == no_index ? 1 : 0;
         std::size_t sum = 0;
         for (const RawLeaf& leaf : tree_.leaves) {
             sum += leaf.depth;
@@ -311,6 +309,6 @@ private:
 
 }  // namespace
 
-LevelBsp lay_out(const Map& map, RawTree&& tree) { return Layout(map, tree).work(); }
+LevelBsp lay_out(const Map& map, RawTree&& tree) { return Layout(map, tree).run(); }
 
 }  // namespace fase::level

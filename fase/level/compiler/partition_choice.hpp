@@ -1,5 +1,5 @@
 #pragma once
-/// Which line of a set of pieces divides it best.
+/// Chooses the partition line of a set of pieces.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,69 +10,70 @@
 
 namespace fase::level {
 
-/// Chooses partition lines; keeps its memory from one choice to the next.
+/// Chooses partition lines; reuses its buffers from one choice to the next.
 ///
-/// Lines are ranked by what they cut and how evenly they divide. In small sets, where most of the nodes of a tree are,
-/// the best few are tried out: each divides the set, both parts are cut to the end by ranking alone, and the line wins
-/// whose tree turns out best (a rollout, as in Tesauro and Galperin 1996, On-line policy improvement using Monte-Carlo
-/// search).
+/// Lines are ranked by a cost: the number of splits and the balance. In small sets, which hold most of the nodes of a
+/// tree, trials follow: each of the best few lines divides the set, both parts are divided down to the leaves by rank
+/// alone, and the line with the best tree is chosen (a rollout, as in Tesauro and Galperin 1996, On-line policy
+/// improvement using Monte-Carlo search).
 class PartitionChoice {
 public:
     PartitionChoice(const Plan& plan, const CompileOptions& options);
-    /// The plane that divides the pieces best, for a node of that depth; Plan::no_plane when none divides them, that
-    /// is, when every piece faces all others: the set is convex.
+    /// Returns the plane that divides the pieces best, for a node of that depth; no_index if none divides them: the
+    /// set is convex, each piece faces all others.
     [[nodiscard]] std::uint32_t choose(std::span<const Piece> pieces, std::uint32_t depth);
 
 private:
-    /// A plane that pieces lie on, and how many segs of theirs would be on either side of it.
+    /// A plane with pieces on it, and how many of their segs would be on either side.
     struct Candidate {
         std::uint32_t plane = 0;
         float right = 0, left = 0;
     };
-    /// A candidate that divides, and what it costs.
+    /// A candidate that divides the set, and its cost.
     struct Ranked {
-        std::uint32_t plane = Plan::no_plane;
+        std::uint32_t plane = no_index;
         double splits = 0, cost = 0;
     };
-    /// What a set came to when it was cut to the end: sub-sectors, the sum of their depths, segs cut on the way.
+    /// The result of a trial: number of sub-sectors, the sum of their depths, number of splits.
     struct Outcome {
         double leaves = 0, depth = 0, splits = 0;
     };
-    /// How many lines are tried out in sets of at most so many pieces.
+    /// The number of lines that are tried in sets of at most `pieces` pieces.
     struct Trial {
         std::size_t pieces = 0, lines = 1;
     };
-    /// What a number of segs counts in a price: its power 2.5 as a part, 1.5 as the whole that splits are a share of.
+    /// Powers of a number of segs n that the cost uses: n^2.5 for a part, n^1.5 for the weight of splits.
     struct Powers {
         double of_part = 0, of_splits = 0;
     };
-    static constexpr std::size_t max_tried = 16, tabled = 1024;
+    static constexpr std::size_t max_trials = 16, table_size = 1024;
 
     const Plan& plan_;
     CompileOptions options_;
     Trial trial_, inner_trial_;
-    double usual_depth_ = 0;      ///< a guess at the mean depth of the map's sub-sectors
-    double leaf_price_ = 0;       ///< of the choice at hand
-    std::size_t steps_left_ = 0;  ///< nodes of trials; when none are left, nothing is tried out any more: lines that
-                                  ///< all cross each other would keep us for ever
+    double expected_depth_ = 0;   ///< an estimate of the mean depth of the map's sub-sectors
+    double leaf_cost_ = 0;        ///< of the current choice
+    std::size_t steps_left_ = 0;  ///< budget of trial nodes; at 0 there are no more trials: lines that all cross each
+                                  ///< other would take far too long
     Point centre_;
-    std::vector<FloatLine> lines_;      ///< by plane, relative to the centre
-    std::vector<float> x_, y_;          ///< by point, likewise
-    std::vector<std::uint32_t> slots_;  ///< by plane: which candidate it is, when that one says so too
+    std::vector<FloatLine> lines_;  ///< by plane, relative to the centre
+    std::vector<float> x_, y_;      ///< by point, relative to the centre
+    std::vector<std::uint32_t>
+        slots_;  ///< by plane: index of its candidate, valid if that candidate has the same plane
     std::vector<Candidate> candidates_;
     std::vector<FloatLine> candidate_lines_;
     std::vector<SideCounts> counts_;
     PieceColumns columns_;
     std::vector<Powers> powers_;  ///< by number of segs
 
-    [[nodiscard]] std::size_t max_weighed(std::size_t pieces) const;
+    [[nodiscard]] std::size_t max_candidates(std::size_t pieces) const;
     [[nodiscard]] Powers powers_of(float segs) const;
-    [[nodiscard]] double price_of(float right, float left, float splits) const;
-    PieceSet fill(std::span<const Piece> pieces);
+    [[nodiscard]] double cost_of(float right, float left, float splits) const;
+    PieceSet load(std::span<const Piece> pieces);
     void find_candidates(PieceSet set);
     std::size_t rank(PieceSet set, std::span<Ranked> best);
-    std::size_t best_of(PieceSet set, std::span<const Ranked> ranked, Trial inner, Outcome& outcome);
-    Outcome cut_to_the_end(PieceSet set, Trial trial);
+    std::size_t best_trial(PieceSet set, std::span<const Ranked> ranked, Trial inner, Outcome& outcome);
+    Outcome divide_to_leaves(PieceSet set, Trial trial);
     [[nodiscard]] bool divides(std::uint32_t plane, std::span<const Piece> pieces) const;
 };
 

@@ -1,11 +1,11 @@
-/// Sets are laid behind each other and overwritten when they are done with.
+/// Stores the parts of a set after it; a later split of an earlier set overwrites them.
 #include "fase/level/compiler/piece_columns.hpp"
 
 #include <algorithm>
 
 namespace fase::level {
 
-void PieceColumns::make_room(std::size_t length) {
+void PieceColumns::ensure_length(std::size_t length) {
     if (ax.size() >= length) return;
     const std::size_t size = length + length / 2;
     for (std::vector<float>* column : {&ax, &ay, &bx, &by, &weight}) column->resize(size);
@@ -14,7 +14,7 @@ void PieceColumns::make_room(std::size_t length) {
     left.resize(size);
 }
 
-void PieceColumns::end_set(PieceSet set) {
+void PieceColumns::add_padding(PieceSet set) {
     for (std::size_t i = 0; i < PieceView::padding; ++i) weight[set.end() + i] = 0;
 }
 
@@ -23,16 +23,16 @@ PieceView PieceColumns::view(PieceSet set) const {
     return {ax.data() + at, ay.data() + at, bx.data() + at, by.data() + at, weight.data() + at, set.count};
 }
 
-void PieceColumns::add(PieceSet& set, std::size_t like, float from_x, float from_y, float to_x, float to_y) {
+void PieceColumns::add(PieceSet& set, std::size_t source, float from_x, float from_y, float to_x, float to_y) {
     const std::size_t at = set.first + set.count++;
     ax[at] = from_x;
     ay[at] = from_y;
     bx[at] = to_x;
     by[at] = to_y;
-    weight[at] = weight[like];
-    plane[at] = plane[like];
-    right[at] = right[like];
-    left[at] = left[like];
+    weight[at] = weight[source];
+    plane[at] = plane[source];
+    right[at] = right[source];
+    left[at] = left[source];
 }
 
 void PieceColumns::split(PieceSet set, std::uint32_t plane_index, const FloatLine& line, PieceSet& on_right,
@@ -40,7 +40,7 @@ void PieceColumns::split(PieceSet set, std::uint32_t plane_index, const FloatLin
     const std::size_t stride = set.count + PieceView::padding;
     on_right = {set.first + stride, 0};
     on_left = {set.first + 2 * stride, 0};
-    make_room(set.first + 3 * stride);
+    ensure_length(set.first + 3 * stride);
     for (std::size_t i = set.first; i < set.end(); ++i) {
         const float from_x = ax[i], from_y = ay[i], to_x = bx[i], to_y = by[i];
         const auto add_to = [&](PieceSet& side) { add(side, i, from_x, from_y, to_x, to_y); };
@@ -66,8 +66,8 @@ void PieceColumns::split(PieceSet set, std::uint32_t plane_index, const FloatLin
             add(from < 0 ? on_left : on_right, i, x, y, to_x, to_y);
         }
     }
-    end_set(on_right);
-    end_set(on_left);
+    add_padding(on_right);
+    add_padding(on_left);
 }
 
 }  // namespace fase::level

@@ -1,5 +1,5 @@
 #pragma once
-/// The points of a plan that is being cut, each once, exact and rounded.
+/// The distinct points of a plan during compilation, exact and rounded.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,40 +9,39 @@
 
 namespace fase::level {
 
-/// A growing table of points; equal points have one index.
+/// A growing table of distinct points.
 class PlanPoints {
 public:
     PlanPoints() { grow(1024); }
-    /// The index of a point, a new one when it is not there yet.
+    /// Returns the index of a point; adds the point if it is new.
     std::uint32_t index_of(const ExactPoint& p);
     [[nodiscard]] std::size_t size() const { return exact_.size(); }
     [[nodiscard]] const ExactPoint& exact(std::uint32_t i) const { return exact_[i]; }
-    /// The point to the nearest double, or one beside it.
+    /// Returns the point in doubles, with an error of at most one unit in the last place.
     [[nodiscard]] Point rounded(std::uint32_t i) const { return rounded_[i]; }
 
-    /// As exact_side(); mostly decided on the rounded point, whose error is known.
+    /// Returns exact_side(); mostly decided with the rounded point, whose error is bounded.
     [[nodiscard]] int side(const ExactLine& line, std::uint32_t i) const {
         const Point p = rounded_[i];
         const double value = line.dx * (p.y - line.y) - line.dy * (p.x - line.x);
-        constexpr double sure = 1.0 / 65536;  // 2^17 (slope) * 2^-36 (point), and the rounding of 2^34
-        return value > sure ? 1 : value < -sure ? -1 : exact_side(line, exact_[i]);
+        constexpr double error_bound = 1.0 / 65536;  // 2^17 (slope) * 2^-36 (point), and the rounding of 2^34
+        return value > error_bound ? 1 : value < -error_bound ? -1 : exact_side(line, exact_[i]);
     }
-    /// As exact_order().
+    /// Returns exact_order(), filtered in the same way.
     [[nodiscard]] int order(const ExactLine& line, std::uint32_t i, std::uint32_t j) const {
         const Point p = rounded_[i], q = rounded_[j];
         const double value = line.dx * (p.x - q.x) + line.dy * (p.y - q.y);
-        constexpr double sure = 1.0 / 65536;
-        return value > sure ? 1 : value < -sure ? -1 : exact_order(line, exact_[i], exact_[j]);
+        constexpr double error_bound = 1.0 / 65536;
+        return value > error_bound ? 1 : value < -error_bound ? -1 : exact_order(line, exact_[i], exact_[j]);
     }
 
 private:
-    static constexpr std::uint32_t empty = 0xffffffff;
     std::vector<ExactPoint> exact_;
     std::vector<Point> rounded_;
-    std::vector<std::uint32_t> places_;  ///< hash table of indices, half full at most
+    std::vector<std::uint32_t> slots_;  ///< hash table of indices, at most half full; no_index: free slot
 
-    [[nodiscard]] std::size_t place_of(const ExactPoint& p) const;
-    void grow(std::size_t places);
+    [[nodiscard]] std::size_t slot_of(const ExactPoint& p) const;
+    void grow(std::size_t slots);
 };
 
 }  // namespace fase::level

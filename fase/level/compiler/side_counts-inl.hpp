@@ -1,5 +1,5 @@
-/// The loop of side_counts.hpp for one instruction set. Included once for each inside its namespace, so no #pragma
-/// once.
+/// The loop of side_counts.hpp for one instruction set. Included once for each, inside its namespace, so without
+/// #pragma once.
 namespace hn = hwy::HWY_NAMESPACE;
 
 using FloatTag = hn::CappedTag<float, 16>;

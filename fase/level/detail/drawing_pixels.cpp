@@ -1,4 +1,4 @@
-/// Drawings as pixels: what a shape covers of each pixel, row by row, in four lines a row.
+/// Rasterizes drawings: computes the coverage of each pixel, row by row, with four scan lines a row.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace fase::level {
 namespace {
 
-/// The strokes of a sign on a grid of 4 by 6, y upward; a bar lifts the pen.
+/// The strokes of a character on a grid of 4 by 6, y upward; a bar separates strokes.
 struct Glyph {
-    char sign;
+    char character;
     std::string_view strokes;
 };
 constexpr Glyph glyphs[] = {
@@ -63,10 +63,10 @@ constexpr Glyph glyphs[] = {
     {')', "16 24 22 10"},
 };
 
-/// Paints shapes over each other.
-class Painter {
+/// Draws marks over each other.
+class Rasterizer {
 public:
-    Painter(const Drawing& drawing, double scale) : scale_(scale) {
+    Rasterizer(const Drawing& drawing, double scale) : scale_(scale) {
         constexpr int max_side = 16384;
         pixels_.width = std::clamp(static_cast<int>(std::ceil(drawing.width * scale)), 1, max_side);
         pixels_.height = std::clamp(static_cast<int>(std::ceil(drawing.height * scale)), 1, max_side);
@@ -75,7 +75,7 @@ public:
         cover_.resize(static_cast<std::size_t>(pixels_.width) + 2);
     }
 
-    void paint(const Mark& mark) {
+    void draw(const Mark& mark) {
         switch (mark.kind) {
             case Mark::Kind::Polygon: {
                 std::vector<Point> corners;
@@ -87,16 +87,16 @@ public:
                 for (std::size_t i = 0; i + 1 < mark.points.size(); ++i)
                     stroke(mark.points[i], mark.points[i + 1], mark.size, mark.colour);
                 break;
-            case Mark::Kind::Text: write(mark); break;
+            case Mark::Kind::Text: draw_text(mark); break;
         }
     }
-    Pixels&& take() { return std::move(pixels_); }
+    Pixels&& release() { return std::move(pixels_); }
 
 private:
     static constexpr int lines_a_row = 4;
     double scale_;
     Pixels pixels_;
-    std::vector<float> cover_;  ///< of the row at hand: changes of what is covered
+    std::vector<float> cover_;  ///< of the current row: differences of coverage from pixel to pixel
     std::vector<double> crossings_;
 
     void stroke(Point from, Point to, double width, Colour colour) {
@@ -113,28 +113,28 @@ private:
         fill(corners, colour);
     }
 
-    void write(const Mark& mark) {
+    void draw_text(const Mark& mark) {
         const double unit = mark.size / 6;
         Point pen = mark.points[0];
         for (const char c : mark.text) {
-            const char sign = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-            const auto* glyph =
-                std::find_if(std::begin(glyphs), std::end(glyphs), [&](const Glyph& one) { return one.sign == sign; });
+            const char upper = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+            const auto* glyph = std::find_if(std::begin(glyphs), std::end(glyphs),
+                                             [&](const Glyph& one) { return one.character == upper; });
             if (glyph != std::end(glyphs)) {
                 const std::string_view s = glyph->strokes;
                 for (std::size_t i = 0; i + 4 < s.size(); i += 3) {
                     if (s[i + 2] == '|') continue;
-                    const auto place = [&](std::size_t at) {
-                        return Point{pen.x + (s[at] - '0') * unit, pen.y - (s[at + 1] - '0') * unit};
+                    const auto point = [&](std::size_t k) {
+                        return Point{pen.x + (s[k] - '0') * unit, pen.y - (s[k + 1] - '0') * unit};
                     };
-                    stroke(place(i), place(i + 3), unit, mark.colour);
+                    stroke(point(i), point(i + 3), unit, mark.colour);
                 }
             }
             pen.x += (glyph == std::end(glyphs) ? 4 : 6) * unit;
         }
     }
 
-    /// Inside is what lies between the first and second, third and fourth … crossing of a line.
+    /// Fills a polygon by the even-odd rule.
     template <class Corners> void fill(const Corners& corners, Colour colour) {
         double top = 1e30, bottom = -1e30;
         for (const Point p : corners) {
@@ -146,14 +146,14 @@ private:
         for (int row = first; row <= last; ++row) {
             int left = pixels_.width, right = -1;
             for (int k = 0; k < lines_a_row; ++k) {
-                cross(corners, row + (k + 0.5) / lines_a_row);
+                find_crossings(corners, row + (k + 0.5) / lines_a_row);
                 for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2)
                     cover(crossings_[i], crossings_[i + 1], left, right);
             }
             blend(row, left, right, colour);
         }
     }
-    template <class Corners> void cross(const Corners& corners, double y) {
+    template <class Corners> void find_crossings(const Corners& corners, double y) {
         crossings_.clear();
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Point p = corners[i], q = corners[(i + 1) % corners.size()];
@@ -163,7 +163,7 @@ private:
         }
         std::sort(crossings_.begin(), crossings_.end());
     }
-    /// Adds a stretch of one line: as changes, so that long ones take no longer than short ones.
+    /// Adds an interval of one scan line, as differences: O(1) for any length.
     void cover(double from, double to, int& left, int& right) {
         if (!(from < to)) return;
         constexpr float share = 1.0F / lines_a_row;
@@ -186,9 +186,10 @@ private:
             std::uint8_t* pixel =
                 pixels_.rgba.data() + 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels_.width) +
                                            static_cast<std::size_t>(x));
-            const std::array<std::uint8_t, 3> paint{colour.red, colour.green, colour.blue};
+            const std::array<std::uint8_t, 3> components{colour.red, colour.green, colour.blue};
             for (std::size_t k = 0; k < 3; ++k) {
-                const float mixed = static_cast<float>(pixel[k]) * (1 - alpha) + static_cast<float>(paint[k]) * alpha;
+                const float mixed =
+                    static_cast<float>(pixel[k]) * (1 - alpha) + static_cast<float>(components[k]) * alpha;
                 pixel[k] = static_cast<std::uint8_t>(mixed + 0.5F);
             }
         }
@@ -198,9 +199,9 @@ private:
 }  // namespace
 
 Pixels pixels_of(const Drawing& drawing, double scale) {
-    Painter painter(drawing, scale);
-    for (const Mark& mark : drawing.marks) painter.paint(mark);
-    return painter.take();
+    Rasterizer rasterizer(drawing, scale);
+    for (const Mark& mark : drawing.marks) rasterizer.draw(mark);
+    return rasterizer.release();
 }
 
 }  // namespace fase::level

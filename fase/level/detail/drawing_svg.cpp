@@ -1,46 +1,50 @@
-/// Drawings as SVG.
-#include <fmt/format.h>
-
-#include <iterator>
-
+/// Writes drawings as SVG.
+#include "fase/drawing/svg.hpp"
 #include "fase/level/detail/drawing.hpp"
 
 namespace fase::level {
 namespace {
 
-std::string number(double value) {
-    std::string text = fmt::format("{:.1f}", value);
-    if (text.ends_with(".0")) text.resize(text.size() - 2);
-    return text == "-0" ? "0" : text;
-}
+using drawing::SvgAttributes;
+using drawing::SvgWriter;
 
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-            case '&': safe += "&amp;"; break;
-            case '<': safe += "&lt;"; break;
-            case '>': safe += "&gt;"; break;
-            default: safe += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-        }
-    }
-    return safe;
-}
-
-std::string opacity_of(const Mark& mark) { return number(mark.colour.alpha / 2.55); }
-
-std::string opening_of(const Mark& mark) {
-    const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", mark.colour.red, mark.colour.green, mark.colour.blue);
-    const std::string opacity = mark.colour.alpha == 255 ? "" : fmt::format(" opacity=\"{}%\"", opacity_of(mark));
+/// Opens the group that holds marks of one kind, colour and size.
+void open_group(SvgWriter& svg, const Mark& mark) {
+    const std::string colour = drawing::svg_colour(mark.colour.red, mark.colour.green, mark.colour.blue);
+    SvgAttributes attributes;
     switch (mark.kind) {
-        case Mark::Kind::Polygon: return fmt::format("<g fill=\"{}\"{}>\n", colour, opacity);
+        case Mark::Kind::Polygon: attributes = {{"fill", colour}}; break;
         case Mark::Kind::Line:
-            return fmt::format("<g fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linecap=\"round\"{}>\n",
-                               colour, mark.size, opacity);
-        case Mark::Kind::Text: break;
+            attributes = {{"fill", "none"},
+                          {"stroke", colour},
+                          {"stroke-width", drawing::svg_fixed(mark.size, 2)},
+                          {"stroke-linecap", "round"}};
+            break;
+        case Mark::Kind::Text:
+            attributes = {{"fill", colour}, {"font-family", "sans-serif"}, {"font-size", mark.size * 1.4}};
+            break;
     }
-    return fmt::format("<g fill=\"{}\" font-family=\"sans-serif\" font-size=\"{}\"{}>\n", colour,
-                       number(mark.size * 1.4), opacity);
+    if (mark.colour.alpha != 255)
+        attributes.emplace_back("opacity", drawing::svg_number(mark.colour.alpha / 2.55) + "%");
+    svg.open("g", attributes);
+}
+
+bool share_group(const Mark& a, const Mark& b) {
+    return a.kind == b.kind && a.colour == b.colour && (a.size == b.size || a.kind == Mark::Kind::Polygon);
+}
+
+void add_mark(SvgWriter& svg, const Mark& mark) {
+    if (mark.kind == Mark::Kind::Text) {
+        svg.text({{"x", mark.points[0].x}, {"y", mark.points[0].y}}, mark.text);
+        return;
+    }
+    drawing::SvgPath path;
+    for (std::size_t i = 0; i < mark.points.size(); ++i) {
+        const Point p = mark.points[i];
+        i == 0 ? path.move_to(p.x, p.y) : path.line_to(p.x, p.y);
+    }
+    if (mark.kind == Mark::Kind::Polygon) path.close();
+    svg.path(path);
 }
 
 }  // namespace
@@ -48,40 +52,26 @@ std::string opening_of(const Mark& mark) {
 void Drawing::polygon(std::vector<Point> corners, Colour colour) {
     marks.push_back({Mark::Kind::Polygon, colour, std::move(corners), 1, {}});
 }
-void Drawing::line(std::vector<Point> points, double width_of_line, Colour colour) {
-    marks.push_back({Mark::Kind::Line, colour, std::move(points), width_of_line, {}});
+void Drawing::line(std::vector<Point> points, double line_width, Colour colour) {
+    marks.push_back({Mark::Kind::Line, colour, std::move(points), line_width, {}});
 }
-void Drawing::text(Point begin, double capitals, std::string words, Colour colour) {
-    marks.push_back({Mark::Kind::Text, colour, {begin}, capitals, std::move(words)});
+void Drawing::text(Point start, double capital_height, std::string words, Colour colour) {
+    marks.push_back({Mark::Kind::Text, colour, {start}, capital_height, std::move(words)});
 }
 
 std::string svg_of(const Drawing& drawing) {
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
-        "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
-        number(drawing.width), number(drawing.height));
-    const auto out = std::back_inserter(svg);
+    SvgWriter svg(drawing.width, drawing.height);
+    svg.background("#ffffff");
     const Mark* before = nullptr;
     for (const Mark& mark : drawing.marks) {
-        const bool same = before != nullptr && before->kind == mark.kind && before->colour == mark.colour &&
-                          (before->size == mark.size || mark.kind == Mark::Kind::Polygon);
-        if (!same) {
-            if (before != nullptr) svg += "</g>\n";
-            svg += opening_of(mark);
+        if (before == nullptr || !share_group(*before, mark)) {
+            if (before != nullptr) svg.close();
+            open_group(svg, mark);
         }
         before = &mark;
-        if (mark.kind == Mark::Kind::Text) {
-            fmt::format_to(out, "<text x=\"{}\" y=\"{}\">{}</text>\n", number(mark.points[0].x),
-                           number(mark.points[0].y), escaped(mark.text));
-            continue;
-        }
-        svg += "<path d=\"";
-        for (std::size_t i = 0; i < mark.points.size(); ++i)
-            fmt::format_to(out, "{}{} {}", i == 0 ? 'M' : 'L', number(mark.points[i].x), number(mark.points[i].y));
-        svg += mark.kind == Mark::Kind::Polygon ? "Z\"/>\n" : "\"/>\n";
+        add_mark(svg, mark);
     }
-    if (before != nullptr) svg += "</g>\n";
-    return svg + "</svg>\n";
+    return svg.finish();
 }
 
 }  // namespace fase::level

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers as WAD files hold them: little-endian, two's complement.
+/// Reads and writes numbers of WAD files: little-endian, two's complement.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace fase::level {
 
-/// `at` and what is read from there lie inside `bytes`; so for all of these.
+/// Precondition of all read functions: the number at offset `at` is inside `bytes`.
 [[nodiscard]] constexpr std::uint16_t read_u16(std::span<const std::byte> bytes, std::size_t at) {
     return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[at]) | std::to_integer<unsigned>(bytes[at + 1])
                                                                                  << 8);
@@ -34,7 +34,7 @@ inline void append_u32(std::vector<std::byte>& out, std::uint32_t value) {
     append_u16(out, static_cast<std::uint16_t>(value & 0xffff));
     append_u16(out, static_cast<std::uint16_t>(value >> 16));
 }
-/// Eight bytes, zeros behind the name; longer names are cut.
+/// Appends eight bytes: the name, padded with zeros; longer names are truncated.
 inline void append_name(std::vector<std::byte>& out, std::string_view name) {
     for (std::size_t i = 0; i < 8; ++i) out.push_back(i < name.size() ? static_cast<std::byte>(name[i]) : std::byte{0});
 }

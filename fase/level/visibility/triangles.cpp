@@ -1,4 +1,4 @@
-/// Questions to all triangles, one after the other.
+/// Loops over all triangles of a mesh.
 #include "fase/level/visibility/triangles.hpp"
 
 #include <algorithm>
@@ -9,18 +9,19 @@
 
 namespace fase::level {
 
-std::optional<PolygonHit> cast_ray_at_all(const TriangleMesh& mesh, const Ray& ray) {
+std::optional<PolygonHit> cast_ray_brute_force(const TriangleMesh& mesh, const Ray& ray) {
     std::optional<PolygonHit> nearest;
     for (std::uint32_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const auto hit = ray_triangle(ray.origin, to_double(ray.direction), corners_of(mesh, t));
-        if (hit && hit->at <= double(ray.length) && (!nearest || hit->at < nearest->at)) nearest = {t, hit->at};
+        if (hit && hit->distance <= double(ray.length) && (!nearest || hit->distance < nearest->distance))
+            nearest = {t, hit->distance};
     }
     return nearest;
 }
 
 namespace {
 
-/// Sums angles as a product of complex numbers, and counts the whole turns.
+/// Sums angles as a product of complex numbers, and counts full turns.
 class AngleSum {
 public:
     /// Adds the angle of (x, y), of any length.
@@ -30,11 +31,11 @@ public:
         const double re = (re_ * x - im_ * y) / size, im = (re_ * y + im_ * x) / size;
         if (im_ >= 0 && y >= 0 && im < 0) ++turns_;
         if (im_ < 0 && y < 0 && im >= 0) --turns_;
-        const double stretch = 1.5 - 0.5 * (re * re + im * im);  // keeps the length at 1
-        re_ = re * stretch;
-        im_ = im * stretch;
+        const double factor = 1.5 - 0.5 * (re * re + im * im);  // renormalizes to length 1
+        re_ = re * factor;
+        im_ = im * factor;
     }
-    /// The sum, rounded to whole turns.
+    /// Returns the sum, rounded to full turns.
     [[nodiscard]] int turns() const { return turns_; }
 
 private:
@@ -45,7 +46,7 @@ private:
 }  // namespace
 
 int winding_number(const TriangleMesh& mesh, Vec3d point) {
-    AngleSum sum;  // of half the solid angles
+    AngleSum sum;  // of half solid angles
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const TriangleCorners corners = corners_of(mesh, t);
         const Vec3d a = corners[0] - point, b = corners[1] - point, c = corners[2] - point;
@@ -55,21 +56,22 @@ int winding_number(const TriangleMesh& mesh, Vec3d point) {
     return sum.turns();
 }
 
-int rim_winding(std::span<const RimEdge> rim, Vec3d point, Vec3d way) {
+int boundary_winding(std::span<const BoundaryEdge> boundary, Vec3d point, Vec3d direction) {
     AngleSum sum;
-    for (const RimEdge& edge : rim) {
+    for (const BoundaryEdge& edge : boundary) {
         const Vec3d a = edge.from - point, b = edge.to - point;
         const double la = length(a), lb = length(b);
-        // The third corner lies at the end of the way, endlessly far.
-        const double x = la * lb + dot(a, b) + dot(b, way) * la + dot(way, a) * lb, y = dot(a, cross(b, way));
-        for (int i = 0; i < edge.times; ++i) sum.add(x, y);
+        // The third corner is at infinity, in the given direction.
+        const double x = la * lb + dot(a, b) + dot(b, direction) * la + dot(direction, a) * lb;
+        const double y = dot(a, cross(b, direction));
+        for (int i = 0; i < edge.count; ++i) sum.add(x, y);
     }
     return sum.turns();
 }
 
-std::vector<RimEdge> rim_of(const TriangleMesh& mesh) {
-    // Corners by coordinates: the first of those that are equal stands for all.
-    std::vector<std::uint32_t> order(mesh.positions.size()), same(mesh.positions.size());
+std::vector<BoundaryEdge> boundary_of(const TriangleMesh& mesh) {
+    // Merges corners with equal coordinates: the first one represents all.
+    std::vector<std::uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) {
         const Vec3 p = mesh.positions[i] + Vec3{};  // -0 is 0
@@ -77,34 +79,34 @@ std::vector<RimEdge> rim_of(const TriangleMesh& mesh) {
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i)
-        same[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
+        merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];
 
     struct Edge {
         std::uint32_t low, high;
-        int way;
+        int direction;
     };
     std::vector<Edge> edges;
     edges.reserve(mesh.indices.size());
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t from = same[mesh.indices[3 * t + k]], to = same[mesh.indices[3 * t + (k + 1) % 3]];
+            const std::uint32_t from = merged[mesh.indices[3 * t + k]], to = merged[mesh.indices[3 * t + (k + 1) % 3]];
             if (from != to) edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
         }
     }
     std::sort(edges.begin(), edges.end(),
               [](const Edge& a, const Edge& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
-    std::vector<RimEdge> rim;
+    std::vector<BoundaryEdge> boundary;
     for (std::size_t i = 0; i < edges.size();) {
         int sum = 0;
         std::size_t end = i;
         for (; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high; ++end)
-            sum += edges[end].way;
+            sum += edges[end].direction;
         const Vec3d low = to_double(mesh.positions[edges[i].low]), high = to_double(mesh.positions[edges[i].high]);
-        if (sum > 0) rim.push_back({low, high, sum});
-        if (sum < 0) rim.push_back({high, low, -sum});
+        if (sum > 0) boundary.push_back({low, high, sum});
+        if (sum < 0) boundary.push_back({high, low, -sum});
         i = end;
     }
-    return rim;
+    return boundary;
 }
 
 }  // namespace fase::level

@@ -1,4 +1,4 @@
-/// Accessors, buffer views and the container.
+/// Writes accessors, buffer views and the GLB container.
 #include "fase/record/export/glb_builder.hpp"
 
 #include <nlohmann/json.hpp>
@@ -19,14 +19,14 @@ std::uint32_t GlbBuilder::add_accessor(Use use, std::size_t begin, std::size_t c
 
 std::uint32_t GlbBuilder::add_times(std::span<const float> seconds) {
     const auto bytes = std::as_bytes(seconds);
-    const auto [found, is_new] =
+    const auto [found, inserted] =
         times_.try_emplace(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), 0);
-    if (!is_new) return found->second;
+    if (!inserted) return found->second;
     const std::size_t begin = data(Use::Times).size();
     for (const float time : seconds) data(Use::Times).put(time);
     found->second = add_accessor(Use::Times, begin, seconds.size(), float_component, "SCALAR");
-    accessors_.back().least = {seconds.front()};
-    accessors_.back().most = {seconds.back()};
+    accessors_.back().min = {seconds.front()};
+    accessors_.back().max = {seconds.back()};
     return found->second;
 }
 
@@ -40,8 +40,8 @@ std::uint32_t GlbBuilder::add_vectors(Use use, std::span<const Vec3> vectors) {
             lo = min(v, lo);
             hi = max(v, hi);
         }
-        accessors_.back().least = {lo.x, lo.y, lo.z};
-        accessors_.back().most = {hi.x, hi.y, hi.z};
+        accessors_.back().min = {lo.x, lo.y, lo.z};
+        accessors_.back().max = {hi.x, hi.y, hi.z};
     }
     return accessor;
 }
@@ -64,7 +64,7 @@ std::uint32_t GlbBuilder::add_indices(std::span<const Triangle> triangles) {
 }
 
 Result<std::vector<std::byte>> GlbBuilder::finish(std::string text) {
-    // Empty views are not allowed: those that are used keep their order and get new numbers.
+    // glTF does not allow empty buffer views: omit them and number the others in order.
     using nlohmann::json;
     json views = json::array(), accessors = json::array();
     std::array<std::size_t, static_cast<std::size_t>(Use::Count)> number{};
@@ -79,19 +79,19 @@ Result<std::vector<std::byte>> GlbBuilder::finish(std::string text) {
         }
         if (use == static_cast<std::size_t>(Use::Indices)) view["target"] = element_array_buffer;
         views.push_back(std::move(view));
-        length += data_[use].size();  // all are multiples of 4
+        length += data_[use].size();  // always a multiple of 4
     }
     for (const Accessor& accessor : accessors_) {
-        json told{{"bufferView", number[static_cast<std::size_t>(accessor.use)]},
-                  {"byteOffset", accessor.begin},
-                  {"componentType", accessor.component},
-                  {"count", accessor.count},
-                  {"type", accessor.type}};
-        if (!accessor.least.empty()) {
-            told["min"] = accessor.least;
-            told["max"] = accessor.most;
+        json entry{{"bufferView", number[static_cast<std::size_t>(accessor.use)]},
+                   {"byteOffset", accessor.begin},
+                   {"componentType", accessor.component},
+                   {"count", accessor.count},
+                   {"type", accessor.type}};
+        if (!accessor.min.empty()) {
+            entry["min"] = accessor.min;
+            entry["max"] = accessor.max;
         }
-        accessors.push_back(std::move(told));
+        accessors.push_back(std::move(entry));
     }
     if (length != 0) {
         text.pop_back();  // the closing brace
@@ -102,7 +102,7 @@ Result<std::vector<std::byte>> GlbBuilder::finish(std::string text) {
     const std::uint64_t total = 12 + 8 + text.size() + (length != 0 ? 8 + length : 0);
     if (total > 0xffffffffull) {
         return Error{Status::Capacity, "animation",
-                     "needs " + std::to_string(total) + " bytes, a .glb file may have 4294967295",
+                     "found " + std::to_string(total) + " bytes; expected at most 4294967295 in a .glb file",
                      "export a shorter recording"};
     }
     ByteWriter out;

@@ -1,5 +1,5 @@
 #pragma once
-/// Collects the parts of a binary glTF file: JSON beside typed runs of numbers.
+/// Builds a binary glTF file from JSON and typed arrays of numbers.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -14,11 +14,11 @@
 
 namespace fase::record {
 
-/// Numbers go into one buffer, sorted by use; equal runs of times are stored once. Source: Khronos Group 2021, glTF 2.0
-/// specification, 3.6 and 4.
+/// Collects numbers in one buffer, grouped by use; stores equal arrays of times once. Source: Khronos Group 2021,
+/// glTF 2.0 specification, 3.6 and 4.
 class GlbBuilder {
 public:
-    // Each gives the number of its accessor.
+    // Each function returns the index of its accessor.
     std::uint32_t add_times(std::span<const float> seconds);
     std::uint32_t add_points(std::span<const Vec3> points) { return add_vectors(Use::Motion, points); }
     std::uint32_t add_rotations(std::span<const Quat> rotations);
@@ -26,8 +26,8 @@ public:
     std::uint32_t add_normals(std::span<const Vec3> normals) { return add_vectors(Use::Normals, normals); }
     std::uint32_t add_indices(std::span<const Triangle> triangles);
 
-    /// The whole file. Capacity when it is longer than 4 GiB.
-    /// @param document a JSON object that is not empty: all but buffers, buffer views and accessors
+    /// Returns the complete file. Error Capacity if it exceeds 4 GiB.
+    /// @param document a non-empty JSON object with everything except buffers, buffer views and accessors
     Result<std::vector<std::byte>> finish(std::string document);
 
 private:
@@ -37,7 +37,7 @@ private:
         std::size_t begin, count;
         int component;
         const char* type;
-        std::vector<float> least, most;  ///< of each component; empty where glTF does not ask for them
+        std::vector<float> min, max;  ///< of each component; empty where glTF does not require them
     };
     std::uint32_t add_vectors(Use use, std::span<const Vec3> vectors);
     std::uint32_t add_accessor(Use use, std::size_t begin, std::size_t count, int component, const char* type);
@@ -45,7 +45,7 @@ private:
 
     std::array<ByteWriter, static_cast<std::size_t>(Use::Count)> data_;
     std::vector<Accessor> accessors_;
-    std::unordered_map<std::string, std::uint32_t> times_;  ///< accessors by their bytes
+    std::unordered_map<std::string, std::uint32_t> times_;  ///< accessors of times, by their bytes
 };
 
 }  // namespace fase::record

@@ -1,5 +1,5 @@
 #pragma once
-/// Keeps of a motion only the keys that linear interpolation between them cannot do without.
+/// Reduces a motion to the keys that linear interpolation needs.
 #include <cstddef>
 #include <vector>
 
@@ -13,63 +13,63 @@ template <class Value> struct MotionKey {
     Value value;
 };
 
-/// How far `value` is from what lies between `a` and `b` at `share` (0 … 1) of the way: metres for points on the
-/// straight line …
-[[nodiscard]] double distance_between(Vec3d a, Vec3d b, double share, Vec3d value);
-/// … radians for rotations on the shorter great arc, at even speed (glTF's linear interpolation of rotations).
-[[nodiscard]] double distance_between(Quatd a, Quatd b, double share, Quatd value);
+/// Returns how far `value` is from the interpolation between `a` and `b` at `fraction` (0 … 1). Points: in metres,
+/// linear interpolation.
+[[nodiscard]] double distance_between(Vec3d a, Vec3d b, double fraction, Vec3d value);
+/// Rotations: in radians, spherical linear interpolation along the shorter arc (glTF's linear interpolation).
+[[nodiscard]] double distance_between(Quatd a, Quatd b, double fraction, Quatd value);
 
-/// Takes samples one after the other and keeps a key when the line from the last key to the newest sample would miss
-/// one between by more than `tolerance` (metres or radians). At most `max_waiting` samples are held back, unless
-/// nothing moves. Source: the sliding window of Keogh, Chu, Hart, Pazzani 2001, An online algorithm for segmenting time
-/// series.
+/// Receives samples in order and emits a key when interpolation from the last key to the newest sample would miss a
+/// sample between them by more than `tolerance` (metres or radians). Buffers at most `max_pending` samples; a rest of
+/// any length counts as one. Source: the sliding window of Keogh, Chu, Hart, Pazzani 2001, An online algorithm for
+/// segmenting time series.
 template <class Value> class MotionKeys {
 public:
-    static constexpr std::size_t max_waiting = 120;
+    static constexpr std::size_t max_pending = 120;
 
     explicit MotionKeys(double tolerance) : tolerance_(tolerance) {}
-    /// Times must rise.
+    /// Adds a sample. Times must be strictly ascending.
     void add(double time, Value value) {
         if (keys_.empty()) {
             keys_.push_back({time, value});
             return;
         }
         const bool rests = value == keys_.back().value;
-        if (rests && waiting_.size() == 1 && waiting_[0].value == value) {
-            waiting_[0].time = time;  // still at rest: its last moment is all that counts
+        if (rests && pending_.size() == 1 && pending_[0].value == value) {
+            pending_[0].time = time;  // still at rest: only the last such time matters
             return;
         }
-        if (!waiting_.empty() && (waiting_.size() >= max_waiting || misses(time, value))) {
-            keys_.push_back(waiting_.back());
-            waiting_.clear();
+        if (!pending_.empty() && (pending_.size() >= max_pending || misses(time, value))) {
+            keys_.push_back(pending_.back());
+            pending_.clear();
         }
-        waiting_.push_back({time, value});
+        pending_.push_back({time, value});
     }
-    /// The keys; the last sample is the last of them. Nothing can be added afterwards. A motion that rests throughout
-    /// has one.
+    /// Returns the keys; the last sample is the last key. Nothing can be added afterwards. A motion that always rests
+    /// has one key.
     const std::vector<MotionKey<Value>>& finish() {
-        if (!waiting_.empty() && !(keys_.size() == 1 && rests())) keys_.push_back(waiting_.back());
-        waiting_.clear();
+        if (!pending_.empty() && !(keys_.size() == 1 && rests())) keys_.push_back(pending_.back());
+        pending_.clear();
         return keys_;
     }
 
 private:
     [[nodiscard]] bool misses(double time, Value value) const {
         const MotionKey<Value>& from = keys_.back();
-        for (const MotionKey<Value>& sample : waiting_) {
-            const double share = (sample.time - from.time) / (time - from.time);
-            if (distance_between(from.value, value, share, sample.value) > tolerance_) return true;
+        for (const MotionKey<Value>& sample : pending_) {
+            const double fraction = (sample.time - from.time) / (time - from.time);
+            if (distance_between(from.value, value, fraction, sample.value) > tolerance_) return true;
         }
         return false;
     }
     [[nodiscard]] bool rests() const {
-        for (const MotionKey<Value>& sample : waiting_) {
+        for (const MotionKey<Value>& sample : pending_) {
             if (!(sample.value == keys_.back().value)) return false;
         }
         return true;
     }
     double tolerance_;
-    std::vector<MotionKey<Value>> keys_, waiting_;
+    std::vector<MotionKey<Value>> keys_, pending_;
 };
 
 }  // namespace fase::record

@@ -1,4 +1,4 @@
-/// Frames into blocks.
+/// Encodes frames into blocks.
 #include "fase/record/recording/block_writer.hpp"
 
 #include <cmath>
@@ -9,18 +9,18 @@ namespace fase::record {
 namespace {
 
 std::uint8_t flags_of(const BodyFrame& body) {
-    return static_cast<std::uint8_t>((body.awake ? body_awake : 0) | (body.broken ? body_broken : 0) |
+    return static_cast<std::uint8_t>((body.awake ? body_awake : 0) | (body.quarantined ? body_quarantined : 0) |
                                      body.kind << body_kind_shift);
 }
 bool fits_16_bits(std::int64_t value) { return value >= -32768 && value <= 32767; }
 
-/// n numbers as n low bytes, then n high bytes.
+/// Writes n numbers as n low bytes, then n high bytes.
 template <class Items, class Get> void put_planes(ByteWriter& out, const Items& items, const Get& get) {
     for (const auto& item : items) out.put(static_cast<std::uint8_t>(get(item) & 255));
     for (const auto& item : items) out.put(static_cast<std::uint8_t>(get(item) >> 8));
 }
 
-/// Points in quanta, each as the difference to the one before.
+/// Encodes points in quanta, each as the difference to the previous one.
 class PointColumns {
 public:
     explicit PointColumns(double quanta_per_metre) : quanta_per_metre_(quanta_per_metre) {}
@@ -33,10 +33,10 @@ public:
     }
     void put(ByteWriter& out) const {
         for (const auto& column : columns_) {
-            std::int64_t before = 0;
+            std::int64_t previous = 0;
             for (const std::int64_t value : column) {
-                out.put_varint(value - before);
-                before = value;
+                out.put_varint(value - previous);
+                previous = value;
             }
         }
     }
@@ -46,12 +46,12 @@ private:
     std::array<std::vector<std::int64_t>, 3> columns_;
 };
 
-/// The rows of pairs: each a against the one before, each b against its a.
+/// Writes the rows of pairs: each a relative to the previous a, each b relative to its a.
 template <class Pairs> void put_pair_columns(ByteWriter& out, const Pairs& pairs) {
-    std::int64_t before = 0;
+    std::int64_t previous = 0;
     for (const auto& pair : pairs) {
-        out.put_varint(std::int64_t(pair.a) - before);
-        before = pair.a;
+        out.put_varint(std::int64_t(pair.a) - previous);
+        previous = pair.a;
     }
     for (const auto& pair : pairs) out.put_varint(std::int64_t(pair.b) - std::int64_t(pair.a));
 }
@@ -63,47 +63,48 @@ Result<void> BlockWriter::check(const Frame& frame) const {
         return Error{Status::BadArgument, "step " + std::to_string(frame.step) + ", " + where, problem, {}};
     };
     if (frame.stage_ms.size() != stages_ || frame.counters.size() != counters_) {
-        return refuse("report", "found another number of stages or counters than the head of the recording names");
+        return refuse("report", "found a number of stages or counters that differs from the head of the recording");
     }
-    const double most = std::min(max_position, 0x1p50 / quanta_per_metre_);
+    const double limit = std::min(max_position, 0x1p50 / quanta_per_metre_);
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
         const BodyFrame& body = frame.bodies[i];
         const auto named = [&] { return "body row " + std::to_string(body.row); };
         if (body.row >= max_rows || (i > 0 && body.row <= frame.bodies[i - 1].row) || body.kind > 2) {
-            return refuse(named(), "found rows that do not rise or a kind that is none");
+            return refuse(named(), "found rows that are not ascending or an invalid kind");
         }
         const Vec3d at = abs(body.pose.position);
-        if (!(at.x <= most && at.y <= most && at.z <= most)) {
-            return refuse(named(), "found a position that is not finite or too far out, need one within 1e9 m");
+        if (!(at.x <= limit && at.y <= limit && at.z <= limit)) {
+            return refuse(named(), "found a position that is not finite or too far away; expected one within 1e9 m");
         }
         if (!(std::abs(length_squared(body.pose.rotation) - 1) < 0.02f)) {
-            return refuse(named(), "found a rotation that is not of length 1");
+            return refuse(named(), "found a rotation that is not a unit quaternion");
         }
     }
     return {};
 }
 
-void BlockWriter::see_change(std::uint32_t row, const PoseCode& code) {
+void BlockWriter::add_change(std::uint32_t row, const PoseCode& code) {
     Row& state = rows_[row];
     if (code == state.code) return;
-    const bool moved_before = state.moved_in == frames_;
-    if (!moved_before) {
+    const bool moved_in_last_frame = state.moved_in == frames_;
+    if (!moved_in_last_frame) {
         state.step = {};
-        state.turn = {};
+        state.rotation_step = {};
     }
     Move move{row, {}};
     bool fits = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int64_t step = code.position[axis] - state.code.position[axis];
-        const std::int64_t missed = step - state.step[axis];
-        fits = fits && fits_16_bits(missed);
-        move.missed[axis] = static_cast<std::uint16_t>(zigzag(missed));
+        const std::int64_t residual = step - state.step[axis];
+        fits = fits && fits_16_bits(residual);
+        move.residuals[axis] = static_cast<std::uint16_t>(zigzag(residual));
         state.step[axis] = step;
-        const int turn = wrap14(int(code.rotation.small[axis]) - int(state.code.rotation.small[axis]));
-        move.missed[3 + axis] = static_cast<std::uint16_t>(zigzag(wrap14(turn - state.turn[axis])));
-        state.turn[axis] = turn;
+        const int rotation_step = wrap14(int(code.rotation.small[axis]) - int(state.code.rotation.small[axis]));
+        move.residuals[3 + axis] =
+            static_cast<std::uint16_t>(zigzag(wrap14(rotation_step - state.rotation_step[axis])));
+        state.rotation_step[axis] = rotation_step;
     }
-    move.missed[3] = static_cast<std::uint16_t>(move.missed[3] | code.rotation.largest << 14);
+    move.residuals[3] = static_cast<std::uint16_t>(move.residuals[3] | code.rotation.largest << 14);
     state.code = code;
     if (fits) {
         state.moved_in = frames_ + 1;
@@ -114,37 +115,37 @@ void BlockWriter::see_change(std::uint32_t row, const PoseCode& code) {
     }
 }
 
-void BlockWriter::sort_changes(const Frame& frame, bool key) {
+void BlockWriter::classify_changes(const Frame& frame, bool key) {
     removed_.clear();
-    flagged_.clear();
-    islanded_.clear();
+    flags_changed_.clear();
+    island_changed_.clear();
     added_.clear();
     jumped_.clear();
     moved_.clear();
-    next_living_.clear();
-    if (key) living_.clear();
+    next_present_.clear();
+    if (key) present_.clear();
     std::size_t old = 0;
     for (const BodyFrame& body : frame.bodies) {
-        while (old < living_.size() && living_[old] < body.row) removed_.push_back(living_[old++]);
+        while (old < present_.size() && present_[old] < body.row) removed_.push_back(present_[old++]);
         if (body.row >= rows_.size()) rows_.resize(std::size_t(body.row) + 1);
         Row& state = rows_[body.row];
         const PoseCode code = encode_pose(body.pose, quanta_per_metre_);
         const std::uint8_t flags = flags_of(body);
-        if (old < living_.size() && living_[old] == body.row) {
+        if (old < present_.size() && present_[old] == body.row) {
             ++old;
-            if (flags != state.flags) flagged_.push_back(body.row);
-            if (body.island != state.island) islanded_.push_back(body.row);
+            if (flags != state.flags) flags_changed_.push_back(body.row);
+            if (body.island != state.island) island_changed_.push_back(body.row);
             state.flags = flags;
             state.island = body.island;
-            see_change(body.row, code);
+            add_change(body.row, code);
         } else {
             added_.push_back({body.row, code});
             state = {.code = code, .island = body.island, .flags = flags};
         }
-        next_living_.push_back(body.row);
+        next_present_.push_back(body.row);
     }
-    while (old < living_.size()) removed_.push_back(living_[old++]);
-    living_.swap(next_living_);
+    while (old < present_.size()) removed_.push_back(present_[old++]);
+    present_.swap(next_present_);
 }
 
 void BlockWriter::put_rows(std::span<const std::uint32_t> rows) {
@@ -157,10 +158,10 @@ void BlockWriter::put_rows(std::span<const std::uint32_t> rows) {
 
 void BlockWriter::put_positions(std::span<const Change> changes) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::int64_t before = 0;
+        std::int64_t previous = 0;
         for (const Change& change : changes) {
-            out_.put_varint(change.code.position[axis] - before);
-            before = change.code.position[axis];
+            out_.put_varint(change.code.position[axis] - previous);
+            previous = change.code.position[axis];
         }
     }
 }
@@ -217,7 +218,7 @@ Result<void> BlockWriter::add(const Frame& frame) {
         out_.put(first_frame_);
         out_.put(std::uint32_t{0});  // frames, set by take()
     }
-    sort_changes(frame, key);
+    classify_changes(frame, key);
 
     const std::size_t begin = out_.size();
     out_.put(std::uint32_t{0});  // size, set below
@@ -241,12 +242,12 @@ Result<void> BlockWriter::add(const Frame& frame) {
     put_positions(added_);
     put_rotations(added_);
     for (const Change& change : added_) out_.put_varuint(rows_[change.row].island);
-    out_.put_varuint(flagged_.size());
-    put_rows(flagged_);
-    for (const std::uint32_t row : flagged_) out_.put(rows_[row].flags);
-    out_.put_varuint(islanded_.size());
-    put_rows(islanded_);
-    for (const std::uint32_t row : islanded_) out_.put_varuint(rows_[row].island);
+    out_.put_varuint(flags_changed_.size());
+    put_rows(flags_changed_);
+    for (const std::uint32_t row : flags_changed_) out_.put(rows_[row].flags);
+    out_.put_varuint(island_changed_.size());
+    put_rows(island_changed_);
+    for (const std::uint32_t row : island_changed_) out_.put_varuint(rows_[row].island);
     out_.put_varuint(jumped_.size());
     put_rows(rows_of(jumped_));
     put_positions(jumped_);
@@ -255,7 +256,7 @@ Result<void> BlockWriter::add(const Frame& frame) {
     const std::size_t before_moves = out_.size();
     put_rows(rows_of(moved_));
     for (std::size_t i = 0; i < 6; ++i) {
-        put_planes(out_, moved_, [i](const Move& move) { return move.missed[i]; });
+        put_planes(out_, moved_, [i](const Move& move) { return move.residuals[i]; });
     }
     cost_.moves += moved_.size();
     cost_.move_bytes += out_.size() - before_moves;

@@ -1,5 +1,5 @@
 #pragma once
-/// Frames into the raw bytes of a block: a key frame, then what changed.
+/// Encodes frames into the raw bytes of a block: a key frame, then only changes.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,13 +12,13 @@
 
 namespace fase::record {
 
-/// What the frames of a recording cost so far.
+/// The size of the moves in a recording so far.
 struct FrameCost {
-    std::uint64_t moves = 0;       ///< bodies told as moved, over all frames
-    std::uint64_t move_bytes = 0;  ///< their bytes before packing, row lists included
+    std::uint64_t moves = 0;       ///< bodies written as moved, over all frames
+    std::uint64_t move_bytes = 0;  ///< their bytes before compression, including row lists
 };
 
-/// Collects frames; the caller takes the bytes when the block is full. Memory: one small state a row and the block.
+/// Encodes frames; the caller takes the bytes when the block is full. Memory: a small state per row, plus the block.
 class BlockWriter {
 public:
     explicit BlockWriter(const Head& head)
@@ -27,14 +27,15 @@ public:
           stages_(head.stage_names.size()),
           counters_(head.counter_names.size()) {}
 
-    /// Adds a frame. BadArgument, and nothing changed, when a pose is not finite or farther than 1e9 m from the origin,
-    /// a rotation is not of length 1, rows do not rise, or a list has another length than the head says.
+    /// Appends a frame. Error BadArgument, without any change, if a position is not finite or farther than 1e9 m from
+    /// the origin, a rotation is not a unit quaternion, rows are not ascending, or a list has another length than the
+    /// head says.
     Result<void> add(const Frame& frame);
-    /// Frames since take().
+    /// Returns the number of frames since take().
     [[nodiscard]] std::uint32_t frames() const { return frames_; }
-    /// Bytes since take().
+    /// Returns the number of bytes since take().
     [[nodiscard]] std::size_t size() const { return out_.size(); }
-    /// The raw block, to be begun anew; valid until the next add().
+    /// Returns the raw block and starts a new one. The bytes are valid until the next add().
     [[nodiscard]] std::span<const std::byte> take();
     [[nodiscard]] const FrameCost& cost() const { return cost_; }
 
@@ -42,8 +43,8 @@ private:
     struct Row {
         PoseCode code;
         std::array<std::int64_t, 3> step{};
-        std::array<int, 3> turn{};
-        std::uint32_t moved_in = 0;  ///< the frame of the block (from 1) in which the steps were made
+        std::array<int, 3> rotation_step{};
+        std::uint32_t moved_in = 0;  ///< the frame of the block, from 1, in which the steps were made
         std::uint32_t island = 0;
         std::uint8_t flags = 0;
     };
@@ -53,11 +54,11 @@ private:
     };
     struct Move {
         std::uint32_t row;
-        std::array<std::uint16_t, 6> missed;
+        std::array<std::uint16_t, 6> residuals;
     };
     [[nodiscard]] Result<void> check(const Frame& frame) const;
-    void sort_changes(const Frame& frame, bool key);
-    void see_change(std::uint32_t row, const PoseCode& code);
+    void classify_changes(const Frame& frame, bool key);
+    void add_change(std::uint32_t row, const PoseCode& code);
     void put_rows(std::span<const std::uint32_t> rows);
     void put_positions(std::span<const Change> changes);
     void put_rotations(std::span<const Change> changes);
@@ -73,9 +74,9 @@ private:
     ByteWriter out_, taken_;
     FrameCost cost_;
     std::vector<Row> rows_;
-    std::vector<std::uint32_t> living_, next_living_;
-    // What happens in the frame at hand.
-    std::vector<std::uint32_t> removed_, flagged_, islanded_, scratch_rows_;
+    std::vector<std::uint32_t> present_, next_present_;
+    // The changes of the current frame.
+    std::vector<std::uint32_t> removed_, flags_changed_, island_changed_, scratch_rows_;
     std::vector<Change> added_, jumped_;
     std::vector<Move> moved_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers into bytes and back, little-endian; the reader never leaves its bytes.
+/// Writes and reads little-endian numbers; the reader checks all bounds.
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,18 +14,20 @@
 
 namespace fase::record {
 
+/// An integer or floating-point type, without bool.
 template <class T>
 concept PlainNumber = std::is_arithmetic_v<T> && !std::is_same_v<T, bool>;
 
-/// 0, -1, 1, -2 … as 0, 1, 2, 3 …
+/// Maps 0, -1, 1, -2 … to 0, 1, 2, 3 …
 constexpr std::uint64_t zigzag(std::int64_t value) {
     return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
 }
+/// Reverses zigzag().
 constexpr std::int64_t unzigzag(std::uint64_t code) {
     return static_cast<std::int64_t>(code >> 1) ^ -static_cast<std::int64_t>(code & 1);
 }
 
-/// Appends numbers to a growing run of bytes.
+/// Appends numbers to a growing byte buffer.
 class ByteWriter {
 public:
     template <PlainNumber T> void put(T value) {
@@ -45,7 +47,7 @@ public:
     }
     void put_varint(std::int64_t value) { put_varuint(zigzag(value)); }
     void put_bytes(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
-    /// The letters alone, without their count.
+    /// Appends the letters without their count.
     void put_letters(std::string_view letters) { put_bytes(std::as_bytes(std::span(letters))); }
     void put_text(std::string_view text) {
         put_varuint(text.size());
@@ -74,8 +76,8 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Reads what ByteWriter wrote. Past the end, or after anything that cannot be, every read gives 0 and failed() is true
-/// from then on: read first, ask once, before the numbers are used.
+/// Reads what ByteWriter wrote. A read past the end or of an invalid value returns 0 and makes failed() true for good;
+/// all later reads return 0. Callers read several numbers and check failed() once, before they use them.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -88,24 +90,24 @@ public:
         if (!has(sizeof(T))) return fail<T>();
         Bits bits = 0;
         for (std::size_t i = 0; i < sizeof(T); ++i) {
-            bits = static_cast<Bits>(bits | static_cast<Bits>(static_cast<Bits>(bytes_[at_ + i]) << (8 * i)));
+            bits = static_cast<Bits>(bits | static_cast<Bits>(static_cast<Bits>(bytes_[offset_ + i]) << (8 * i)));
         }
-        at_ += sizeof(T);
+        offset_ += sizeof(T);
         return std::bit_cast<T>(bits);
     }
-    /// Below 2^53, else failed.
+    /// Reads a number below 2^53; fails otherwise.
     std::uint64_t get_varuint() {
         std::uint64_t value = 0;
         for (int shift = 0; shift < 56; shift += 7) {
             if (!has(1)) return fail<std::uint64_t>();
-            const auto byte = static_cast<std::uint64_t>(bytes_[at_++]);
+            const auto byte = static_cast<std::uint64_t>(bytes_[offset_++]);
             value |= (byte & 127) << shift;
             if (byte < 128) return value < (std::uint64_t(1) << 53) ? value : fail<std::uint64_t>();
         }
         return fail<std::uint64_t>();
     }
     std::int64_t get_varint() { return unzigzag(get_varuint()); }
-    /// A count of things of which each takes at least `min_bytes`: more than can follow is a failure, and gives 0.
+    /// Reads a count of items of at least `min_bytes` each; fails if the remaining bytes cannot hold that many.
     std::size_t get_count(std::uint64_t min_bytes) { return checked_count(get_varuint(), min_bytes); }
     std::size_t get_u32_count(std::uint64_t min_bytes) { return checked_count(get<std::uint32_t>(), min_bytes); }
     std::span<const std::byte> get_bytes(std::size_t count) {
@@ -113,8 +115,8 @@ public:
             fail<int>();
             return {};
         }
-        const auto part = bytes_.subspan(at_, count);
-        at_ += count;
+        const auto part = bytes_.subspan(offset_, count);
+        offset_ += count;
         return part;
     }
     std::string get_text() {
@@ -129,23 +131,23 @@ public:
         const Vec3 position = get_vec3(), vector = get_vec3();
         return {position, {vector.x, vector.y, vector.z, get<float>()}};
     }
-    /// Something read made no sense.
-    void refuse() { fail<int>(); }
+    /// Marks the input as invalid.
+    void set_failed() { fail<int>(); }
     [[nodiscard]] bool failed() const { return failed_; }
-    [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
-    [[nodiscard]] std::size_t at() const { return at_; }
+    [[nodiscard]] std::size_t remaining() const { return bytes_.size() - offset_; }
+    [[nodiscard]] std::size_t offset() const { return offset_; }
 
 private:
-    [[nodiscard]] bool has(std::size_t count) const { return !failed_ && count <= bytes_.size() - at_; }
+    [[nodiscard]] bool has(std::size_t count) const { return !failed_ && count <= bytes_.size() - offset_; }
     std::size_t checked_count(std::uint64_t count, std::uint64_t min_bytes) {
-        return failed_ || count > left() / min_bytes ? fail<std::size_t>() : static_cast<std::size_t>(count);
+        return failed_ || count > remaining() / min_bytes ? fail<std::size_t>() : static_cast<std::size_t>(count);
     }
     template <class T> T fail() {
         failed_ = true;
         return T{};
     }
     std::span<const std::byte> bytes_;
-    std::size_t at_ = 0;
+    std::size_t offset_ = 0;
     bool failed_ = false;
 };
 

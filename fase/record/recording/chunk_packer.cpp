@@ -1,4 +1,4 @@
-/// Chunks, packed and unpacked by zstd.
+/// Packs and unpacks chunks with zstd.
 #include "fase/record/recording/chunk_packer.hpp"
 
 #include <zstd.h>
@@ -51,23 +51,24 @@ ChunkPacker::~ChunkPacker() = default;
 
 Result<void> ChunkPacker::append(ChunkType type, std::span<const std::byte> raw, std::vector<std::byte>& out) {
     if (raw.size() > max_raw_bytes) {
-        return Error{Status::Capacity, "chunk " + letters_of(type),
-                     "found " + std::to_string(raw.size()) + " bytes, need at most " + std::to_string(max_raw_bytes),
-                     "record fewer bodies or smaller meshes"};
+        return Error{
+            Status::Capacity, "chunk " + letters_of(type),
+            "found " + std::to_string(raw.size()) + " bytes; expected at most " + std::to_string(max_raw_bytes),
+            "record fewer bodies or smaller meshes"};
     }
     const std::size_t begin = out.size();
-    const std::size_t room = std::max(ZSTD_compressBound(raw.size()), raw.size());
-    out.resize(begin + 8 + packed_head_bytes + room + 4);
+    const std::size_t capacity = std::max(ZSTD_compressBound(raw.size()), raw.size());
+    out.resize(begin + 8 + packed_head_bytes + capacity + 4);
     std::byte* packed = out.data() + begin + 8 + packed_head_bytes;
     std::size_t size =
-        context_->zstd == nullptr ? 0 : ZSTD_compress2(context_->zstd, packed, room, raw.data(), raw.size());
-    bool plain = context_->zstd == nullptr || ZSTD_isError(size) != 0 || size >= raw.size() ||
-                 raw.size() > free_raw_bytes + max_packing * (size + packed_head_bytes);
+        context_->zstd == nullptr ? 0 : ZSTD_compress2(context_->zstd, packed, capacity, raw.data(), raw.size());
+    bool store_plain = context_->zstd == nullptr || ZSTD_isError(size) != 0 || size >= raw.size() ||
+                       raw.size() > free_raw_bytes + max_packing * (size + packed_head_bytes);
     if (type != frames_chunk) {
         table_bytes_ += raw.size();
-        plain = plain || table_bytes_ > free_table_bytes + max_table_packing * (file_bytes_ + size);
+        store_plain = store_plain || table_bytes_ > free_table_bytes + max_table_packing * (file_bytes_ + size);
     }
-    if (plain) {
+    if (store_plain) {
         size = raw.size();
         if (size != 0) std::memcpy(packed, raw.data(), size);
     }
@@ -75,7 +76,7 @@ Result<void> ChunkPacker::append(ChunkType type, std::span<const std::byte> raw,
     std::byte* head = out.data() + begin;
     set_u32(head, static_cast<std::uint32_t>(type));
     set_u32(head + 4, static_cast<std::uint32_t>(length));
-    set_u32(head + 8, plain ? 0 : 1);
+    set_u32(head + 8, store_plain ? 0 : 1);
     set_u32(head + 12, static_cast<std::uint32_t>(raw.size()));
     out.resize(begin + 8 + length + 4);
     const auto checked = std::span<const std::byte>(out).subspan(begin, 8 + length);
@@ -88,14 +89,15 @@ Result<std::uint64_t> raw_length(const ChunkBody& body) {
     const auto refuse = [&](const char* problem) {
         return Error{Status::Format, "chunk " + letters_of(body.type), problem, {}};
     };
-    if (body.bytes.size() < packed_head_bytes) return refuse("found a body without its head");
+    if (body.bytes.size() < packed_head_bytes) return refuse("found an incomplete chunk body");
     const std::uint32_t method = get_u32(body.bytes.data());
     const std::uint64_t raw = get_u32(body.bytes.data() + 4);
-    if (method > 1) return refuse("found a way of packing that is unknown, need plain or zstd");
+    if (method > 1) return refuse("found an unknown packing method; expected 0 (plain) or 1 (zstd)");
     if (raw > max_raw_bytes || raw > free_raw_bytes + max_packing * body.bytes.size()) {
-        return refuse("expands to more than a chunk of its size may");
+        return refuse("expands to more bytes than a chunk of its size may contain");
     }
-    if (method == 0 && raw != body.bytes.size() - packed_head_bytes) return refuse("found another length than it says");
+    if (method == 0 && raw != body.bytes.size() - packed_head_bytes)
+        return refuse("found a length that differs from the stated one");
     return raw;
 }
 
@@ -118,7 +120,7 @@ Result<std::vector<std::byte>> unpack(const ChunkBody& body) {
     ZSTD_outBuffer out{raw.data(), raw.size(), 0};
     const std::size_t state = ZSTD_decompressStream(context.zstd, &out, &in);
     if (ZSTD_isError(state) != 0 || state != 0 || in.pos != in.size || out.pos != out.size) {
-        return refuse("found packed bytes that are no zstd frame of the length it says");
+        return refuse("found packed bytes that are not a zstd frame of the stated length");
     }
     return raw;
 }

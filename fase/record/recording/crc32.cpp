@@ -1,4 +1,4 @@
-/// CRC-32 by eight tables.
+/// CRC-32 with eight lookup tables.
 #include "fase/record/recording/crc32.hpp"
 
 #include <array>

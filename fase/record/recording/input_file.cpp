@@ -1,4 +1,4 @@
-/// Reading on a POSIX system.
+/// Reads files on a POSIX system.
 #include "fase/record/recording/input_file.hpp"
 
 #include <fcntl.h>
@@ -16,19 +16,22 @@ Result<InputFile> InputFile::open(const std::string& name) {
     InputFile file;
     file.path_ = name;
     if (name.empty() || name.find('\0') != std::string::npos) {
-        return Error{Status::Io, name, "found no name of a file", {}};
+        return Error{Status::Io, name, "found an invalid file name", {}};
     }
     do {
         file.handle_ = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     } while (file.handle_ < 0 && errno == EINTR);
     if (file.handle_ < 0) return system_error(name, "cannot open", errno);
-    struct stat about {};
-    if (::fstat(file.handle_, &about) != 0) return system_error(name, "cannot read", errno);
-    if (!S_ISREG(about.st_mode)) {
+    struct stat info {};
+    if (::fstat(file.handle_, &info) != 0) return system_error(name, "cannot read", errno);
+    if (!S_ISREG(info.st_mode)) {
         return Error{
-            Status::Io, name, S_ISDIR(about.st_mode) ? "found a folder, need a file" : "found no regular file", {}};
+            Status::Io,
+            name,
+            S_ISDIR(info.st_mode) ? "found a folder; expected a file" : "found a special file; expected a regular file",
+            {}};
     }
-    file.size_ = static_cast<std::uint64_t>(about.st_size);
+    file.size_ = static_cast<std::uint64_t>(info.st_size);
     return file;
 }
 
@@ -47,14 +50,14 @@ InputFile::~InputFile() {
 Result<void> InputFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
     std::size_t done = 0;
     while (done < bytes.size()) {
-        const ssize_t answer =
+        const ssize_t count =
             ::pread(handle_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-        if (answer > 0) {
-            done += static_cast<std::size_t>(answer);
-        } else if (answer == 0) {
+        if (count > 0) {
+            done += static_cast<std::size_t>(count);
+        } else if (count == 0) {
             return Error{Status::Io,
                          path_ + ":" + std::to_string(offset + done),
-                         "the file ends here: it was made shorter while it was read",
+                         "found the end of the file: it was truncated while it was read",
                          {}};
         } else if (errno != EINTR) {
             return system_error(path_ + ":" + std::to_string(offset + done), "cannot read", errno);

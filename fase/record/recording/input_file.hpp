@@ -1,5 +1,5 @@
 #pragma once
-/// A regular file that is read at any place.
+/// Random-access reading of a regular file.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,18 +9,19 @@
 
 namespace fase::record {
 
-/// Reads without mapping: a file that shrinks meanwhile is an Error, not a crash.
+/// An open regular file. It is not memory-mapped: if the file shrinks meanwhile, read() returns an Error instead of a
+/// crash.
 class InputFile {
 public:
-    /// Io when it cannot be opened or is no regular file.
+    /// Opens a file. Error Io if it cannot be opened or is not a regular file.
     static Result<InputFile> open(const std::string& name);
     InputFile(InputFile&& other) noexcept;
     InputFile& operator=(InputFile&& other) noexcept;
     ~InputFile();
 
-    /// Fills `bytes` from `offset` on; Io when the file ends before.
+    /// Fills `bytes` from `offset` on. Error Io if the file ends before.
     Result<void> read(std::uint64_t offset, std::span<std::byte> bytes) const;
-    /// Bytes it had when it was opened.
+    /// Returns the size in bytes when the file was opened.
     [[nodiscard]] std::uint64_t size() const { return size_; }
     [[nodiscard]] const std::string& path() const { return path_; }
 

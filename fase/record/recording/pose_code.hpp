@@ -1,5 +1,5 @@
 #pragma once
-/// Poses as small whole numbers: positions in quanta, rotations by the smallest three components of the quaternion.
+/// Encodes poses as small integers: positions in quanta, rotations as the three smallest components of the quaternion.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,23 +9,24 @@
 
 namespace fase::record {
 
-/// A rotation in 44 bits: which component is largest, and codes (0 … 16382, 8191 steps either side of 8192) of the
-/// others in the order x y z w.
+/// A rotation in 44 bits: the index of the largest component, and the codes of the others in the order x y z w.
+/// Codes are 1 … 16383: up to 8191 steps on either side of 8192.
 struct RotationCode {
     std::array<std::uint16_t, 3> small{8192, 8192, 8192};
     std::uint8_t largest = 3;
     friend bool operator==(const RotationCode&, const RotationCode&) = default;
 };
-/// A pose as the recording holds it: position in quanta from the world's origin.
+/// A pose as stored in the recording. The position is in quanta from the world's origin.
 struct PoseCode {
     std::array<std::int64_t, 3> position{};
     RotationCode rotation;
     friend bool operator==(const PoseCode&, const PoseCode&) = default;
 };
 
-inline constexpr double rotation_steps = 8191 * 1.4142135623730950488;  ///< codes per 1 of a component
+inline constexpr double rotation_steps = 8191 * 1.4142135623730950488;  ///< code steps for a component value of 1
 
-/// Off by at most 0.02° when it is decoded. `q` must be of length 1 within float rounding; q and -q give the same code.
+/// Encodes a rotation with an error of at most 0.02°. `q` must be a unit quaternion within float rounding; q and -q
+/// give the same code.
 [[nodiscard]] inline RotationCode encode_rotation(Quat q) {
     const std::array<double, 4> parts{q.x, q.y, q.z, q.w};
     std::size_t largest = 3;
@@ -42,6 +43,7 @@ inline constexpr double rotation_steps = 8191 * 1.4142135623730950488;  ///< cod
     }
     return code;
 }
+/// Returns the unit quaternion of a code; any code is valid.
 [[nodiscard]] inline Quat decode_rotation(const RotationCode& code) {
     std::array<double, 4> parts{};
     double squares = 0;
@@ -54,7 +56,8 @@ inline constexpr double rotation_steps = 8191 * 1.4142135623730950488;  ///< cod
     const Quatd q = normalized(Quatd{parts[0], parts[1], parts[2], parts[3]});
     return to_float(q);
 }
-/// Off by at most half a quantum on each axis. Positions must be finite and small enough for 2^52 quanta.
+/// Encodes a pose; the position error is at most half a quantum per axis. Positions must be finite and within 2^52
+/// quanta.
 [[nodiscard]] inline PoseCode encode_pose(const Pose& pose, double quanta_per_metre) {
     const Vec3d p = pose.position * quanta_per_metre;
     return {{std::llround(p.x), std::llround(p.y), std::llround(p.z)}, encode_rotation(pose.rotation)};
@@ -67,7 +70,7 @@ inline constexpr double rotation_steps = 8191 * 1.4142135623730950488;  ///< cod
     return {decode_position(code.position, quanta_per_metre), decode_rotation(code.rotation)};
 }
 
-/// A difference of 14-bit codes brought into -8192 … 8191.
+/// Wraps a difference of 14-bit codes into -8192 … 8191.
 [[nodiscard]] constexpr int wrap14(int difference) { return ((difference + 8192) & 16383) - 8192; }
 
 }  // namespace fase::record

@@ -1,4 +1,4 @@
-/// Rows and frames into the file.
+/// Packs rows and frames into chunks and writes them.
 #include "fase/record/recording/recording_writer.hpp"
 
 #include <utility>
@@ -27,12 +27,12 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Head he
     const auto refuse = [](const char* field, const char* problem) {
         return Error{Status::BadArgument, field, problem, {}};
     };
-    if (!(options.flush_seconds >= 0)) return refuse("RecorderOptions.flush_seconds", "need 0 or more");
+    if (!(options.flush_seconds >= 0)) return refuse("RecorderOptions.flush_seconds", "expected 0 or more");
     if (options.flush_frames < 1 || options.flush_frames > max_block_frames) {
-        return refuse("RecorderOptions.flush_frames", "need 1 to 64");
+        return refuse("RecorderOptions.flush_frames", "expected 1 to 64");
     }
     if (!(options.quanta_per_metre >= 1e-3 && options.quanta_per_metre <= 1e6)) {
-        return refuse("RecorderOptions.quanta_per_metre", "need 0.001 to 1e6");
+        return refuse("RecorderOptions.quanta_per_metre", "expected 0.001 to 1e6");
     }
     head.quanta_per_metre = options.quanta_per_metre;
     head.contacts = options.contacts;
@@ -53,11 +53,11 @@ RecordingWriter::RecordingWriter(OutputFile file, const Head& head, const Record
 template <class Row> Result<std::uint32_t> RecordingWriter::add_row(std::size_t table, const Row& row) {
     Table& rows = tables_[table];
     if (rows.rows >= max_rows) {
-        return Error{Status::Capacity, "recording", "a table holds 2097152 rows, the most there may be", {}};
+        return Error{Status::Capacity, "recording", "found a full table; expected at most 2097152 rows", {}};
     }
     if (rows.pending.empty() || rows.pending.back().bytes.size() > full_table_bytes) {
         rows.pending.emplace_back();
-        rows.pending.back().bytes.put(std::uint32_t{0});  // count, set when packed
+        rows.pending.back().bytes.put(std::uint32_t{0});  // count, set by pack_tables()
     }
     write(rows.pending.back().bytes, row);
     ++rows.pending.back().count;
@@ -69,32 +69,32 @@ template Result<std::uint32_t> RecordingWriter::add_row(std::size_t, const Recor
 
 Result<std::uint32_t> RecordingWriter::add(const RecordedCollider& collider) {
     if (collider.body >= tables_[2].rows || collider.shape >= tables_[0].rows) {
-        return Error{Status::BadArgument, "RecordedCollider", "names a body or a shape that was not added", {}};
+        return Error{Status::BadArgument, "RecordedCollider", "found a body or shape row that was not added", {}};
     }
     return add_row(3, collider);
 }
 
 Result<std::uint32_t> RecordingWriter::add(const RecordedVisual& visual) {
     if (visual.body >= tables_[2].rows || visual.mesh >= tables_[1].rows) {
-        return Error{Status::BadArgument, "RecordedVisual", "names a body or a mesh that was not added", {}};
+        return Error{Status::BadArgument, "RecordedVisual", "found a body or mesh row that was not added", {}};
     }
     return add_row(4, visual);
 }
 
 Result<void> RecordingWriter::end_collider(std::uint32_t row) {
     if (row >= tables_[3].rows)
-        return Error{Status::BadArgument, "end_collider", "names a collider that was not added", {}};
+        return Error{Status::BadArgument, "end_collider", "found a collider row that was not added", {}};
     const Result<std::uint32_t> added = add_row(5, ColliderEnd{row, frames()});
     if (!added) return added.error();
     return {};
 }
 
 Error RecordingWriter::failed(const Error& error) {
-    Error told = error;
-    told.problem +=
+    Error complete = error;
+    complete.problem +=
         "; wrote " + std::to_string(frames_flushed_) + " frames, " + std::to_string(file_.bytes()) + " bytes";
-    state_ = told;
-    return told;
+    state_ = complete;
+    return complete;
 }
 
 Result<void> RecordingWriter::pack(ChunkType type, std::span<const std::byte> raw, std::uint64_t first_frame,
@@ -140,7 +140,7 @@ Result<void> RecordingWriter::flush() {
     return {};
 }
 
-bool RecordingWriter::time_is_over() {
+bool RecordingWriter::is_flush_due() {
     const Clock::time_point now = Clock::now();
     if (block_.frames() == 1) block_begin_ = now;
     const Clock::duration since_last = frames() > 1 ? now - last_frame_ : Clock::duration::zero();
@@ -152,11 +152,12 @@ Result<void> RecordingWriter::add_frame(const Frame& frame) {
     if (!state_) return state_;
     if (finished_) return Error{Status::Busy, path(), "the recording is finished", {}};
     if (!frame.bodies.empty() && frame.bodies.back().row >= tables_[2].rows) {
-        return Error{Status::BadArgument, "step " + std::to_string(frame.step), "names a body that was not added", {}};
+        return Error{
+            Status::BadArgument, "step " + std::to_string(frame.step), "found a body row that was not added", {}};
     }
     if (Result<void> added = block_.add(frame); !added) return added;
     const bool full = block_.frames() >= options_.flush_frames || block_.size() >= full_block_bytes;
-    if (time_is_over() || full) return flush();
+    if (is_flush_due() || full) return flush();
     return {};
 }
 

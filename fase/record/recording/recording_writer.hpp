@@ -1,5 +1,5 @@
 #pragma once
-/// Writes a recording from plain rows and frames; knows nothing of worlds.
+/// Writes a recording from plain rows and frames; independent of World.
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -16,53 +16,53 @@
 
 namespace fase::record {
 
-/// How a recording is written.
+/// Options for writing a recording.
 struct RecorderOptions {
-    double flush_seconds = 1;         ///< a block is written at the latest so long after its first frame; 0: each frame
-    std::uint32_t flush_frames = 64;  ///< … or when it holds so many frames: 1 to 64
-    int level = 3;                    ///< of zstd: 1 quick, 19 small
-    bool durable = false;             ///< each block is forced to the disk, so that it survives a power cut too
+    double flush_seconds = 1;         ///< longest time from a block's first frame until it is written; 0: every frame
+    std::uint32_t flush_frames = 64;  ///< frames per block at most: 1 to 64
+    int level = 3;                    ///< zstd level: 1 fast, 19 small
+    bool durable = false;             ///< flushes each block to the disk, so that it survives a power failure
     bool contacts = false;            ///< frames list all contact points
-    double quanta_per_metre = default_quanta_per_metre;  ///< positions are kept to half of its inverse: 0.25 mm
+    double quanta_per_metre = default_quanta_per_metre;  ///< position error is at most half of 1 / this: 0.25 mm
 };
 
-/// Rows are numbered from 0 in the order they are added. Nothing is written before flush(), which add_frame() calls as
-/// the options say: when the block is full, when its time is over, or when it would be before another frame that takes
-/// as long as the last. After an error of the file every call gives that error again.
+/// Writes rows and frames. Each table numbers its rows from 0 in the order they are added. Only flush() writes to the
+/// file. add_frame() calls it when the block is full, when flush_seconds have passed, or when they would pass before
+/// the next frame, if that takes as long as the last one. After a file error, every call returns that error.
 class RecordingWriter {
 public:
-    /// Makes `NAME.part` and writes the head. Errors: those of OutputFile::create(), BadArgument for options out of
+    /// Creates `NAME.part` and writes the head. Errors: those of OutputFile::create(); BadArgument for options out of
     /// range.
     static Result<RecordingWriter> create(const std::string& name, Head head, const RecorderOptions& options = {});
     RecordingWriter(RecordingWriter&&) noexcept = default;
     RecordingWriter& operator=(RecordingWriter&&) noexcept = default;
     ~RecordingWriter() = default;
 
-    // Rows: the number of the new row; Capacity when the table is full (2^21 rows), BadArgument when it names a row
-    // that is not there.
+    // Each add() returns the number of the new row. Errors: Capacity if the table is full (2^21 rows); BadArgument if
+    // it refers to a row that was not added.
     Result<std::uint32_t> add(const RecordedShape& shape) { return add_row(0, shape); }
     Result<std::uint32_t> add(const RecordedMesh& mesh) { return add_row(1, mesh); }
     Result<std::uint32_t> add(const RecordedBody& body) { return add_row(2, body); }
     Result<std::uint32_t> add(const RecordedCollider& collider);
     Result<std::uint32_t> add(const RecordedVisual& visual);
-    /// The collider is gone from the next block on.
+    /// Ends a collider: it is absent from the next block on.
     Result<void> end_collider(std::uint32_t row);
 
-    /// All rows that the frame names must have been added. Errors: BadArgument as of BlockWriter::add(), then nothing
-    /// changed; Io with the frames and bytes that were written, and the file so far opens.
+    /// Adds a frame. All rows that it refers to must have been added. Errors: BadArgument as in BlockWriter::add(),
+    /// without any change; Io, with the number of frames and bytes written: the file opens up to there.
     Result<void> add_frame(const Frame& frame);
-    /// Writes what is held back.
+    /// Writes all pending rows and frames.
     Result<void> flush();
-    /// Flushes, writes the index, gives the file its name. Nothing can be added afterwards.
+    /// Flushes, writes the index and renames the file to its final name. Nothing can be added afterwards.
     Result<void> finish();
 
-    /// Frames added; frames among them that are in the file; bytes in the file.
+    // The number of frames added, of frames written to the file, and of bytes in the file.
     [[nodiscard]] std::uint64_t frames() const { return frames_flushed_ + block_.frames(); }
     [[nodiscard]] std::uint64_t frames_flushed() const { return frames_flushed_; }
     [[nodiscard]] std::uint64_t bytes() const { return file_.bytes(); }
-    /// Whether the next frame begins a block.
+    /// Returns whether the next frame begins a block.
     [[nodiscard]] bool at_block_begin() const { return block_.frames() == 0; }
-    /// Where the file is now: `NAME.part`, then `NAME`.
+    /// Returns the current path: `NAME.part`, then `NAME`.
     [[nodiscard]] const std::string& path() const { return file_.path(); }
     [[nodiscard]] const FrameCost& cost() const { return block_.cost(); }
 
@@ -73,8 +73,8 @@ private:
         std::uint32_t count = 0;
     };
     struct Table {
-        std::uint32_t rows = 0;     ///< in all
-        std::vector<Rows> pending;  ///< a chunk each
+        std::uint32_t rows = 0;     ///< all rows so far
+        std::vector<Rows> pending;  ///< one chunk each
     };
     struct IndexEntry {
         ChunkType type;
@@ -87,9 +87,9 @@ private:
     Result<void> pack_tables();
     Result<void> pack_index();
     Result<void> write_packed();
-    /// Remembers the error and tells how far the file came.
+    /// Stores the error, with the number of frames and bytes written, and returns it.
     Error failed(const Error& error);
-    [[nodiscard]] bool time_is_over();
+    [[nodiscard]] bool is_flush_due();
 
     OutputFile file_;
     RecorderOptions options_;

@@ -1,10 +1,11 @@
-/// Tables into bytes and back.
+/// Encodes and decodes the tables of a recording.
 #include "fase/record/recording/tables.hpp"
 
 #include <cmath>
+#include <optional>
 
-#include "fase/geometry/mesh.hpp"
 #include "fase/record/format.hpp"
+#include "fase/record/recording/shape_code.hpp"
 
 namespace fase::record {
 namespace {
@@ -29,27 +30,27 @@ void put_triangles(ByteWriter& out, std::span<const Triangle> triangles) {
     }
 }
 std::vector<Vec3> get_vertices(ByteReader& in, std::size_t count) {
-    if (in.failed() || count > in.left() / 12) {
-        in.refuse();
+    if (in.failed() || count > in.remaining() / 12) {
+        in.set_failed();
         return {};
     }
     std::vector<Vec3> vertices(count);
     for (Vec3& v : vertices) {
         v = in.get_vec3();
-        if (!is_finite(v)) in.refuse();
+        if (!is_finite(v)) in.set_failed();
     }
     return vertices;
 }
 std::vector<Triangle> get_triangles(ByteReader& in, std::size_t count, std::size_t vertices) {
-    if (in.failed() || count > in.left() / 12) {
-        in.refuse();
+    if (in.failed() || count > in.remaining() / 12) {
+        in.set_failed();
         return {};
     }
     std::vector<Triangle> triangles(count);
     for (Triangle& t : triangles) {
         for (std::uint32_t& corner : t) {
             corner = in.get<std::uint32_t>();
-            if (corner >= vertices) in.refuse();
+            if (corner >= vertices) in.set_failed();
         }
     }
     return triangles;
@@ -57,39 +58,53 @@ std::vector<Triangle> get_triangles(ByteReader& in, std::size_t count, std::size
 LocalPose get_checked_pose(ByteReader& in) {
     const LocalPose pose = in.get_pose();
     if (!is_finite(pose.position) || !is_finite(pose.rotation) || std::abs(length_squared(pose.rotation) - 1) > 0.01f) {
-        in.refuse();
+        in.set_failed();
     }
     return pose;
 }
 std::vector<std::string> get_names(ByteReader& in) {
     std::vector<std::string> names;
     const std::size_t count = in.get_count(1);
-    if (count > 1000) in.refuse();
+    if (count > 1000) in.set_failed();
     for (std::size_t i = 0; i < count && !in.failed(); ++i) names.push_back(in.get_text());
     return names;
 }
 
-bool has_corners(ShapeKind kind) { return kind == ShapeKind::Hull || kind == ShapeKind::Triangles; }
-int size_numbers(ShapeKind kind) {
-    switch (kind) {
-        case ShapeKind::Sphere: return 1;
-        case ShapeKind::Box: return 3;
-        case ShapeKind::Capsule:
-        case ShapeKind::Cylinder: return 2;
-        default: return 0;
-    }
+/// What follows a shape's kind in the file.
+struct ShapeContent {
+    std::size_t number_count = 0;
+    bool has_mesh = false;
+};
+/// Returns what is stored for a kind; nullopt for an unknown kind. Triangles is the only kind that is no shape of the
+/// library.
+std::optional<ShapeContent> content_of(ShapeKind kind) {
+    if (kind == ShapeKind::Triangles) return ShapeContent{0, true};
+    std::optional<ShapeContent> content;
+    for_each_shape([&]<class S>() {
+        if (kind != ShapeCode<S>::kind) return;
+        if constexpr (StoredAsNumbers<S>) {
+            content = ShapeContent{ShapeCode<S>::number_count, false};
+        } else {
+            content = ShapeContent{0, true};
+        }
+    });
+    return content;
 }
 
 RecordedShape read_shape(ByteReader& in, const Tables&) {
     RecordedShape shape;
     const auto kind = in.get<std::uint8_t>();
-    if (kind > static_cast<std::uint8_t>(ShapeKind::Triangles)) in.refuse();
     shape.kind = static_cast<ShapeKind>(kind);
-    for (int i = 0; i < size_numbers(shape.kind); ++i) {
-        const float size = shape.size[static_cast<std::size_t>(i)] = in.get<float>();
-        if (!(size >= 0 && size < 1e9f)) in.refuse();
+    const std::optional<ShapeContent> content = content_of(shape.kind);
+    if (!content) {
+        in.set_failed();
+        return shape;
     }
-    if (has_corners(shape.kind)) {
+    for (std::size_t i = 0; i < content->number_count; ++i) {
+        const float size = shape.size[i] = in.get<float>();
+        if (!(size >= 0 && size < 1e9f)) in.set_failed();
+    }
+    if (content->has_mesh) {
         const auto vertices = in.get<std::uint32_t>(), triangles = in.get<std::uint32_t>();
         shape.vertices = get_vertices(in, vertices);
         shape.triangles = get_triangles(in, triangles, vertices);
@@ -115,7 +130,7 @@ RecordedBody read_body(ByteReader& in, const Tables&) {
     body.mass = in.get<float>();
     body.colour = get_colour(in);
     body.name = in.get_text();
-    if (body.kind > 2) in.refuse();
+    if (body.kind > 2) in.set_failed();
     return body;
 }
 RecordedCollider read_collider(ByteReader& in, const Tables& tables) {
@@ -128,7 +143,7 @@ RecordedCollider read_collider(ByteReader& in, const Tables& tables) {
     collider.shape = in.get<std::uint32_t>();
     collider.first_frame = in.get<std::uint64_t>();
     collider.pose = get_checked_pose(in);
-    if (collider.body >= tables.bodies.size() || collider.shape >= tables.shapes.size()) in.refuse();
+    if (collider.body >= tables.bodies.size() || collider.shape >= tables.shapes.size()) in.set_failed();
     return collider;
 }
 RecordedVisual read_visual(ByteReader& in, const Tables& tables) {
@@ -137,7 +152,7 @@ RecordedVisual read_visual(ByteReader& in, const Tables& tables) {
     visual.mesh = in.get<std::uint32_t>();
     visual.pose = get_checked_pose(in);
     visual.colour = get_colour(in);
-    if (visual.body >= tables.bodies.size() || visual.mesh >= tables.meshes.size()) in.refuse();
+    if (visual.body >= tables.bodies.size() || visual.mesh >= tables.meshes.size()) in.set_failed();
     return visual;
 }
 
@@ -150,13 +165,14 @@ Result<void> read_table(ByteReader& in, const char* name, std::vector<Row>& rows
         if (in.failed() || rows.size() >= max_rows) {
             return Error{Status::Format,
                          std::string(name) + " row " + std::to_string(rows.size()),
-                         "found a row that is cut off or names what is not there, need a whole one",
+                         "found an incomplete row or a reference to a missing row; expected a complete row with valid "
+                         "references",
                          {}};
         }
         rows.push_back(std::move(row));
     }
-    if (in.failed() || in.left() != 0) {
-        return Error{Status::Format, std::string(name), "found a table of another length than it says", {}};
+    if (in.failed() || in.remaining() != 0) {
+        return Error{Status::Format, std::string(name), "found a table whose length does not match its rows", {}};
     }
     return {};
 }
@@ -166,51 +182,39 @@ Result<void> read_ends(ByteReader& in, Tables& tables) {
         const auto collider = in.get<std::uint32_t>();
         const auto frame = in.get<std::uint64_t>();
         if (in.failed() || collider >= tables.colliders.size()) {
-            return Error{Status::Format, "ends of colliders", "found a collider that is not there", {}};
+            return Error{Status::Format, "collider ends", "found the row of a missing collider", {}};
         }
         tables.colliders[collider].end_frame = frame;
     }
-    if (in.failed() || in.left() != 0) {
-        return Error{Status::Format, "ends of colliders", "found a table of another length than it says", {}};
+    if (in.failed() || in.remaining() != 0) {
+        return Error{Status::Format, "collider ends", "found a table whose length does not match its rows", {}};
     }
     return {};
 }
 
-/// From a shape of the library to how it is told.
-struct Recorded {
-    RecordedShape operator()(const Sphere& s) const { return {ShapeKind::Sphere, {s.radius, 0, 0}, {}, {}}; }
-    RecordedShape operator()(const Box& s) const { return {ShapeKind::Box, {s.half.x, s.half.y, s.half.z}, {}, {}}; }
-    RecordedShape operator()(const Capsule& s) const {
-        return {ShapeKind::Capsule, {s.radius, s.half_length, 0}, {}, {}};
-    }
-    RecordedShape operator()(const Cylinder& s) const {
-        return {ShapeKind::Cylinder, {s.radius, s.half_height, 0}, {}, {}};
-    }
-    RecordedShape operator()(const HalfSpace&) const { return {ShapeKind::HalfSpace, {}, {}, {}}; }
-    RecordedShape operator()(const ConvexHull& hull) const {
-        RecordedShape shape{ShapeKind::Hull, {}, hull.vertices, {}};
-        for (const ConvexHull::Face& face : hull.faces) {
-            const auto corner = [&](std::uint32_t k) { return hull.face_vertices[face.first + k]; };
-            for (std::uint32_t k = 2; k < face.count; ++k) {
-                shape.triangles.push_back({corner(0), corner(k - 1), corner(k)});
-            }
-        }
-        return shape;
-    }
-    /// A shape that this format has no numbers for.
-    template <class S> RecordedShape operator()(const S& other) const {
-        const TriangleMesh mesh = fase::triangles(Shape(other));
-        RecordedShape shape{ShapeKind::Triangles, {}, mesh.positions, {}};
-        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-            shape.triangles.push_back({mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
-        }
-        return shape;
-    }
-};
-
 }  // namespace
 
-RecordedShape recorded(const Shape& shape) { return std::visit(Recorded{}, shape); }
+RecordedShape recorded(const Shape& shape) {
+    return std::visit(
+        []<class S>(const S& s) {
+            if constexpr (StoredAsNumbers<S>) {
+                return RecordedShape{ShapeCode<S>::kind, ShapeCode<S>::encode(s), {}, {}};
+            } else {
+                return ShapeCode<S>::encode_mesh(s);
+            }
+        },
+        shape);
+}
+
+std::optional<Shape> shape_of(const RecordedShape& recorded) {
+    std::optional<Shape> shape;
+    for_each_shape([&]<class S>() {
+        if constexpr (StoredAsNumbers<S>) {
+            if (recorded.kind == ShapeCode<S>::kind) shape = ShapeCode<S>::decode(recorded.size);
+        }
+    });
+    return shape;
+}
 
 void write(ByteWriter& out, const Head& head) {
     out.put_text(head.title);
@@ -226,8 +230,9 @@ void write(ByteWriter& out, const Head& head) {
 }
 void write(ByteWriter& out, const RecordedShape& shape) {
     out.put(static_cast<std::uint8_t>(shape.kind));
-    for (int i = 0; i < size_numbers(shape.kind); ++i) out.put(shape.size[static_cast<std::size_t>(i)]);
-    if (!has_corners(shape.kind)) return;
+    const ShapeContent content = content_of(shape.kind).value_or(ShapeContent{});
+    for (std::size_t i = 0; i < content.number_count; ++i) out.put(shape.size[i]);
+    if (!content.has_mesh) return;
     out.put(static_cast<std::uint32_t>(shape.vertices.size()));
     out.put(static_cast<std::uint32_t>(shape.triangles.size()));
     put_vertices(out, shape.vertices);
@@ -284,7 +289,7 @@ Result<Head> read_head(std::span<const std::byte> raw) {
     head.stage_names = get_names(in);
     head.counter_names = get_names(in);
     if (in.failed() || !(head.quanta_per_metre > 1e-6 && head.quanta_per_metre < 1e9)) {
-        return Error{Status::Format, "head", "found one that is cut off or makes no sense", {}};
+        return Error{Status::Format, "head", "found an incomplete or invalid head", {}};
     }
     return head;
 }
@@ -303,7 +308,7 @@ Result<void> read_rows(ChunkType type, std::span<const std::byte> raw, Tables& t
         case colliders_chunk: return read_table(in, "colliders", tables.colliders, read_collider, tables);
         case visuals_chunk: return read_table(in, "visuals", tables.visuals, read_visual, tables);
         case collider_ends_chunk: return read_ends(in, tables);
-        default: return Error{Status::Format, {}, "found a chunk that holds no rows", {}};
+        default: return Error{Status::Format, {}, "found a chunk without rows; expected a table chunk", {}};
     }
 }
 

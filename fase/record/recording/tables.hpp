@@ -1,8 +1,9 @@
 #pragma once
-/// What a recording says once: its head and its tables of shapes, meshes, bodies, colliders and visuals.
+/// The head of a recording and its tables of shapes, meshes, bodies, colliders and visuals.
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,30 +15,31 @@
 
 namespace fase::record {
 
-/// sRGB; alpha 0: none given, the viewer chooses.
+/// An sRGB colour; alpha 0: not given, the viewer selects one.
 struct Colour {
     std::uint8_t red = 0, green = 0, blue = 0, alpha = 0;
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// What holds for the whole recording.
+/// Settings of the whole recording.
 struct Head {
     std::string title;
-    std::string program;  ///< what wrote it
+    std::string program;  ///< the program that wrote the recording
     float time_step = 1.0f / 60;
     Vec3 gravity;
     double quanta_per_metre = default_quanta_per_metre;
-    bool contacts = false;  ///< frames list contact points
+    bool contacts = false;  ///< whether frames list contact points
     std::vector<std::string> stage_names, counter_names;
     friend bool operator==(const Head&, const Head&) = default;
 };
 
+/// Three vertex indices.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// How a recorded shape is told. The numbers stand in files.
+/// The kind of a recorded shape. Files contain its number: append new kinds, never renumber.
 enum class ShapeKind : std::uint8_t { Sphere, Box, Capsule, Cylinder, Hull, HalfSpace, Triangles };
 
-/// A shape by its numbers: a round one by `size`, a hull by its corners and triangles.
+/// A stored shape: its numbers in `size`, or vertices and triangles. ShapeCode says which, for each shape.
 struct RecordedShape {
     ShapeKind kind = ShapeKind::Sphere;
     /// Sphere: radius; box: half sizes; capsule: radius, half length; cylinder: radius, half height.
@@ -46,39 +48,43 @@ struct RecordedShape {
     std::vector<Triangle> triangles;  ///< counter-clockwise from outside
     friend bool operator==(const RecordedShape&, const RecordedShape&) = default;
 };
-/// The shape as it is told; a hull's faces are cut into fans of triangles.
+/// Returns the stored form of a shape; splits the faces of a hull into fans of triangles.
 [[nodiscard]] RecordedShape recorded(const Shape& shape);
+/// Returns the shape of the library; nullopt for a kind that is stored as vertices and triangles.
+[[nodiscard]] std::optional<Shape> shape_of(const RecordedShape& recorded);
 
-/// A mesh for the picture.
+/// A mesh that is drawn instead of shapes.
 struct RecordedMesh {
     std::vector<Vec3> vertices;
-    std::vector<Vec3> normals;  ///< unit, one a vertex; or empty
+    std::vector<Vec3> normals;  ///< unit, one per vertex; or empty
     std::vector<Triangle> triangles;
     friend bool operator==(const RecordedMesh&, const RecordedMesh&) = default;
 };
+/// A body; a reused slot of the world is a new row.
 struct RecordedBody {
     std::uint32_t index = 0;
     std::uint16_t generation = 0;
-    std::uint8_t kind = 2;  ///< 0 static, 1 kinematic, 2 dynamic: as it was when it came
-    std::uint64_t user = 0;
-    float mass = 0;
+    std::uint8_t kind = 2;   ///< 0 static, 1 kinematic, 2 dynamic: when it was added
+    std::uint64_t user = 0;  ///< the user's number
+    float mass = 0;          ///< kg; 0 unless dynamic
     Colour colour;
     std::string name;
     friend bool operator==(const RecordedBody&, const RecordedBody&) = default;
 };
+/// A collider.
 struct RecordedCollider {
     std::uint32_t index = 0;
     std::uint16_t generation = 0;
     bool sensor = false;
-    std::uint32_t body = 0;   ///< row
-    std::uint32_t shape = 0;  ///< row
-    std::uint64_t first_frame = 0;
-    std::uint64_t end_frame =
-        std::numeric_limits<std::uint64_t>::max();  ///< the first without it; told apart from the row
-    LocalPose pose;                                 ///< of the shape in the body
+    std::uint32_t body = 0;                                               ///< row
+    std::uint32_t shape = 0;                                              ///< row
+    std::uint64_t first_frame = 0;                                        ///< the first frame with it
+    std::uint64_t end_frame = std::numeric_limits<std::uint64_t>::max();  ///< the first frame without it; stored in
+                                                                          ///< another table (ColliderEnd)
+    LocalPose pose;                                                       ///< of the shape in the body
     friend bool operator==(const RecordedCollider&, const RecordedCollider&) = default;
 };
-/// A mesh on a body.
+/// A mesh that is attached to a body.
 struct RecordedVisual {
     std::uint32_t body = 0;  ///< row
     std::uint32_t mesh = 0;  ///< row
@@ -86,9 +92,10 @@ struct RecordedVisual {
     Colour colour;
     friend bool operator==(const RecordedVisual&, const RecordedVisual&) = default;
 };
+/// The removal of a collider from a body that stays.
 struct ColliderEnd {
-    std::uint32_t collider = 0;
-    std::uint64_t frame = 0;
+    std::uint32_t collider = 0;  ///< row
+    std::uint64_t frame = 0;     ///< the first without it
 };
 
 /// All tables of a recording.
@@ -101,6 +108,7 @@ struct Tables {
     std::vector<RecordedVisual> visuals;
 };
 
+// Append one row (or the head) in the format of format.md.
 void write(ByteWriter& out, const Head& head);
 void write(ByteWriter& out, const RecordedShape& shape);
 void write(ByteWriter& out, const RecordedMesh& mesh);
@@ -109,12 +117,12 @@ void write(ByteWriter& out, const RecordedCollider& collider);
 void write(ByteWriter& out, const RecordedVisual& visual);
 void write(ByteWriter& out, const ColliderEnd& end);
 
-/// Reads the unpacked head. Format when it is not one.
+/// Decodes the unpacked head. Error Format if it is invalid.
 Result<Head> read_head(std::span<const std::byte> raw);
-/// Adds the rows of one table chunk, each checked against the tables so far. Format, naming the row, when one is wrong;
-/// then `tables` may hold the rows before it. Only for the types that hold tables.
+/// Appends the rows of one table chunk to `tables`; checks each row against the tables so far. Error Format, with the
+/// row, if a row is invalid (`tables` then may contain the rows before it) or the chunk type has no rows.
 Result<void> read_rows(ChunkType type, std::span<const std::byte> raw, Tables& tables);
-/// Whether read_rows() knows the type.
+/// Returns whether a chunk type contains table rows.
 [[nodiscard]] bool holds_rows(ChunkType type);
 
 }  // namespace fase::record

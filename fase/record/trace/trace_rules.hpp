@@ -1,5 +1,5 @@
 #pragma once
-/// How the boxes of made traces begin and how they move: bodies that fly and bounce, without meeting each other.
+/// The rules of generated traces: initial state and motion of bodies that fly and bounce but do not collide.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,32 +11,33 @@
 
 namespace fase::record {
 
-/// One box on its way.
+/// One moving box.
 struct TraceBody {
-    Vec3 at, half;       ///< middle, half sizes; m
+    Vec3 centre, half;   ///< m
     Vec3 velocity;       ///< m/s
-    Vec3 goal;           ///< where it is drawn to, or comes to rest
+    Vec3 target;         ///< the point that attracts it, or where it comes to rest
     bool rests = false;  ///< does not move
     std::uint8_t flags = 0;
 };
 
-/// All boxes, and what moves them. Only + - * / and sqrt, so that all compilers agree.
-struct TraceStage {
+/// The state of a generated trace. Rules use only + - * / and sqrt, so that all compilers give the same bits.
+struct TraceState {
     std::vector<TraceBody> bodies;
-    Aabb room;          ///< that none leaves; everything: no walls
+    Aabb walls;         ///< no body leaves this box; Aabb::everything(): no walls
     float gravity = 0;  ///< m/s², down along y
-    float bounce = 1;   ///< how much of a velocity comes back from a wall
+    float bounce = 1;   ///< the fraction of the velocity that a wall reflects
     Random random;
-    std::uint32_t frame = 0;  ///< that is being made
+    std::uint32_t frame = 0;  ///< the current frame
 };
 
-/// A kind with its rule.
+/// The rule of a kind of trace.
 struct TraceRule {
     TraceKind kind;
-    void (*begin)(TraceStage& stage, std::size_t count);
-    void (*move)(TraceStage& stage);  ///< on by a frame
+    void (*begin)(TraceState& state, std::size_t count);
+    void (*move)(TraceState& state);  ///< advances by one frame
 };
 
+/// Returns the rules of all kinds.
 [[nodiscard]] std::span<const TraceRule> trace_rules();
 
 }  // namespace fase::record

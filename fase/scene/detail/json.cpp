@@ -1,4 +1,4 @@
-/// Builds the flat tree from nlohmann-json's events.
+/// Builds the flat tree from the events of nlohmann-json.
 #include "fase/scene/detail/json.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ std::string_view name_of(JsonKind kind) {
 
 namespace {
 
-/// A text's bytes, counted as they are taken.
+/// Iterates over a text and counts the consumed bytes.
 class CountingIterator {
 public:
     using iterator_category = std::input_iterator_tag;
@@ -34,11 +34,11 @@ public:
     using difference_type = std::ptrdiff_t;
     using pointer = const char*;
     using reference = const char&;
-    CountingIterator(const char* at, std::size_t* taken) : at_(at), taken_(taken) {}
-    reference operator*() const { return *at_; }
+    CountingIterator(const char* position, std::size_t* consumed) : position_(position), consumed_(consumed) {}
+    reference operator*() const { return *position_; }
     CountingIterator& operator++() {
-        ++at_;
-        ++*taken_;
+        ++position_;
+        ++*consumed_;
         return *this;
     }
     CountingIterator operator++(int) {
@@ -46,20 +46,20 @@ public:
         ++*this;
         return old;
     }
-    bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+    bool operator==(const CountingIterator& other) const { return position_ == other.position_; }
 
 private:
-    const char* at_;
-    std::size_t* taken_;
+    const char* position_;
+    std::size_t* consumed_;
 };
 
 }  // namespace
 
-/// Takes nlohmann-json's events; every callback answers whether to go on.
+/// Receives the events of nlohmann-json; every callback returns whether to continue.
 class JsonBuilder {
 public:
     using Source = nlohmann::json;
-    JsonBuilder(const JsonOptions& options, const std::size_t* taken) : options_(options), taken_(taken) {}
+    JsonBuilder(const JsonOptions& options, const std::size_t* consumed) : options_(options), consumed_(consumed) {}
 
     bool null() { return add(JsonKind::Null, 0); }
     bool boolean(bool value) { return add(value ? JsonKind::True : JsonKind::False, 0); }
@@ -71,7 +71,7 @@ public:
         document_.text_ += value;
         return add(JsonKind::String, begin, static_cast<std::uint32_t>(value.size()));
     }
-    bool binary(Source::binary_t&) { return refuse("found binary data, need text"); }
+    bool binary(Source::binary_t&) { return refuse("found binary data; expected text"); }
     bool key(std::string& value) {
         in_key_ = true;
         return string(value);
@@ -82,19 +82,19 @@ public:
     bool end_array() { return end(); }
     bool parse_error(std::size_t, const std::string& token, const Source::exception& exception) {
         if (exception.id == 406)
-            return refuse("found the number " + quoted_short(token) + ", need one that fits a double");
+            return refuse("found the number " + quoted_short(token) + "; expected one in the range of double");
         if (token.empty() || token == "<end of input>" || token == "<U+0000>") {
-            return refuse(*taken_ == 0 || token == "<end of input>"
-                              ? "found the end of the text, need a JSON value complete"
+            return refuse(*consumed_ == 0 || token == "<end of input>"
+                              ? "found the end of the text; expected a complete JSON value"
                               : "found no valid JSON");
         }
-        return refuse("found " + quoted_short(token) + ", need valid JSON here");
+        return refuse("found " + quoted_short(token) + "; expected valid JSON here");
     }
 
     Result<JsonDocument> finish(bool complete) {
         if (!problem_.empty() || !complete) {
             return Error{Status::Format,
-                         "byte " + std::to_string(*taken_),
+                         "byte " + std::to_string(*consumed_),
                          problem_.empty() ? "found no valid JSON" : problem_,
                          {}};
         }
@@ -106,13 +106,13 @@ private:
         if (!in_key_ && !open_.empty()) ++document_.nodes_[open_.back()].size;
         in_key_ = false;
         const auto index = static_cast<std::uint32_t>(document_.nodes_.size());
-        document_.nodes_.push_back({kind, index + 1, static_cast<std::uint32_t>(*taken_), size, number});
+        document_.nodes_.push_back({kind, index + 1, static_cast<std::uint32_t>(*consumed_), size, number});
         return true;
     }
     bool start(JsonKind kind) {
         if (static_cast<int>(open_.size()) >= options_.depth) {
-            return refuse(fmt::format("found arrays and objects nested deeper than {}, need at most {}", options_.depth,
-                                      options_.depth));
+            return refuse(fmt::format("found arrays and objects nested deeper than {}; expected at most {}",
+                                      options_.depth, options_.depth));
         }
         add(kind, 0);
         open_.push_back(static_cast<std::uint32_t>(document_.nodes_.size() - 1));
@@ -128,14 +128,14 @@ private:
         if (document_.nodes_[object].size < 2) return true;
         keys_.clear();
         const auto end = static_cast<std::uint32_t>(document_.nodes_.size());
-        for (std::uint32_t at = object + 1; at < end; at = document_.nodes_[at + 1].end) {
-            const JsonDocument::Node& key = document_.nodes_[at];
+        for (std::uint32_t i = object + 1; i < end; i = document_.nodes_[i + 1].end) {
+            const JsonDocument::Node& key = document_.nodes_[i];
             keys_.push_back(std::string_view(document_.text_).substr(static_cast<std::size_t>(key.number), key.size));
         }
         std::sort(keys_.begin(), keys_.end());
-        const auto twice = std::adjacent_find(keys_.begin(), keys_.end());
-        return twice == keys_.end() ||
-               refuse("found the key " + quoted_short(*twice) + " twice in one object, need it once");
+        const auto duplicate = std::adjacent_find(keys_.begin(), keys_.end());
+        return duplicate == keys_.end() ||
+               refuse("found the key " + quoted_short(*duplicate) + " twice in one object; expected it once");
     }
     bool refuse(std::string problem) {
         problem_ = std::move(problem);
@@ -143,7 +143,7 @@ private:
     }
 
     JsonOptions options_;
-    const std::size_t* taken_;
+    const std::size_t* consumed_;
     JsonDocument document_;
     std::vector<std::uint32_t> open_;
     std::vector<std::string_view> keys_;
@@ -154,20 +154,20 @@ private:
 Result<JsonDocument> parse_json(std::string_view text, const JsonOptions& options) {
     if (text.size() >= std::numeric_limits<std::uint32_t>::max()) {
         return Error{
-            Status::Format, "byte 0", fmt::format("found {} bytes of JSON, need less than 4 GiB", text.size()), {}};
+            Status::Format, "byte 0", fmt::format("found {} bytes of JSON; expected less than 4 GiB", text.size()), {}};
     }
     if (text.starts_with("\xef\xbb\xbf")) {
-        return Error{Status::Format, "byte 0", "found a byte order mark, need JSON without one",
+        return Error{Status::Format, "byte 0", "found a byte order mark; expected JSON without one",
                      "save it as UTF-8 without BOM"};
     }
-    if (const std::size_t at = text.find('\0'); at != text.npos) {  // which nlohmann-json takes for the end
-        return Error{Status::Format, "byte " + std::to_string(at), "found a NUL byte, need valid JSON here", {}};
+    if (const std::size_t nul = text.find('\0'); nul != text.npos) {  // nlohmann-json would stop here
+        return Error{Status::Format, "byte " + std::to_string(nul), "found a NUL byte; expected valid JSON here", {}};
     }
-    std::size_t taken = 0;
-    JsonBuilder builder(options, &taken);
+    std::size_t consumed = 0;
+    JsonBuilder builder(options, &consumed);
     const char* const begin = text.data();
-    const bool complete = nlohmann::json::sax_parse(CountingIterator(begin, &taken),
-                                                    CountingIterator(begin + text.size(), &taken), &builder);
+    const bool complete = nlohmann::json::sax_parse(CountingIterator(begin, &consumed),
+                                                    CountingIterator(begin + text.size(), &consumed), &builder);
     return builder.finish(complete);
 }
 
@@ -180,8 +180,8 @@ std::size_t JsonValue::size() const { return is(JsonKind::Array) || is(JsonKind:
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
     if (!is(JsonKind::Object)) return std::nullopt;
-    for (std::uint32_t at = index_ + 1; at < node().end; at = document_->nodes_[at + 1].end) {
-        if (JsonValue(document_, at).string() == key) return JsonValue(document_, at + 1);
+    for (std::uint32_t i = index_ + 1; i < node().end; i = document_->nodes_[i + 1].end) {
+        if (JsonValue(document_, i).string() == key) return JsonValue(document_, i + 1);
     }
     return std::nullopt;
 }
@@ -189,10 +189,10 @@ std::optional<JsonValue> JsonValue::find(std::string_view key) const {
 std::string JsonValue::pointer() const {
     if (document_ == nullptr) return {};
     std::string path;
-    std::uint32_t at = 0;
-    while (at != index_) {
-        const JsonDocument::Node& parent = document_->nodes_[at];
-        std::uint32_t child = at + 1, number = 0;
+    std::uint32_t current = 0;
+    while (current != index_) {
+        const JsonDocument::Node& parent = document_->nodes_[current];
+        std::uint32_t child = current + 1, number = 0;
         if (parent.kind == JsonKind::Object) {
             while (document_->nodes_[child + 1].end <= index_) child = document_->nodes_[child + 1].end;
             path += '/';
@@ -205,14 +205,14 @@ std::string JsonValue::pointer() const {
             for (; document_->nodes_[child].end <= index_; child = document_->nodes_[child].end) ++number;
             path += '/' + std::to_string(number);
         }
-        at = child;
+        current = child;
     }
     return path;
 }
 
 namespace {
 
-/// Bytes of the well-formed UTF-8 sequence that `text` begins with; 0 when it begins with none (RFC 3629).
+/// Byte length of the valid UTF-8 sequence at the start of `text`; 0: none (RFC 3629).
 std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = byte(0);
@@ -226,9 +226,9 @@ std::size_t utf8_length(std::string_view text) {
         if ((byte(i) & 0xc0) != 0x80) return 0;
     }
     const unsigned char second = byte(1);
-    const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-                       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
-    return wrong ? 0 : length;
+    const bool invalid = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+                         (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
+    return invalid ? 0 : length;
 }
 
 }  // namespace
@@ -253,9 +253,9 @@ std::string quoted(std::string_view text) {
     return out + '"';
 }
 
-std::string quoted_short(std::string_view text, std::size_t most) {
-    if (text.size() <= most) return quoted(text);
-    std::size_t cut = most;
+std::string quoted_short(std::string_view text, std::size_t max_bytes) {
+    if (text.size() <= max_bytes) return quoted(text);
+    std::size_t cut = max_bytes;
     while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xc0) == 0x80) --cut;
     std::string out = quoted(text.substr(0, cut));
     out.insert(out.size() - 1, "…");

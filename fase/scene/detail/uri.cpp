@@ -1,4 +1,4 @@
-/// Decodes uris and holds them to the folder.
+/// Decodes uris and restricts them to the folder.
 #include "fase/scene/detail/uri.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ int hex_digit(char c) {
     return -1;
 }
 
-/// nullopt when a % is not followed by two hexadecimal digits.
+/// Decodes %XX. nullopt if two hexadecimal digits are missing after a %.
 std::optional<std::string> percent_decoded(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -41,7 +41,7 @@ std::optional<std::string> percent_decoded(std::string_view text) {
     return out;
 }
 
-/// What a decoded uri may not be; "" when it is a relative path without tricks.
+/// Returns what is not allowed in a decoded uri; "" for a plain relative path.
 std::string_view objection_to(std::string_view path) {
     if (path.empty()) return "an empty name";
     if (path.find('\0') != path.npos) return "a NUL byte";
@@ -51,7 +51,7 @@ std::string_view objection_to(std::string_view path) {
     if (colon != path.npos && path.substr(0, colon).find('/') == path.npos) return "a scheme or a drive";
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('/', begin), path.size());
-        if (path.substr(begin, end - begin) == "..") return "a way out of the folder (\"..\")";
+        if (path.substr(begin, end - begin) == "..") return "a step out of the folder (\"..\")";
         begin = end + 1;
     }
     return "";
@@ -62,16 +62,16 @@ std::string_view objection_to(std::string_view path) {
 Result<std::string> resolve_uri(const std::string& folder, std::string_view uri) {
     const auto refused = [](std::string problem) { return Error{Status::Format, {}, std::move(problem), {}}; };
     const std::optional<std::string> path = percent_decoded(uri);
-    if (!path) return refused("found a % that no two hexadecimal digits follow, need a valid uri");
+    if (!path) return refused("found a % without two hexadecimal digits; expected a valid uri");
     if (const std::string_view objection = objection_to(*path); !objection.empty()) {
         return refused(
-            fmt::format("found {} in the uri, need a relative path that stays in the model's folder", objection));
+            fmt::format("found {} in the uri; expected a relative path that stays in the model's folder", objection));
     }
     const std::optional<std::string> root = real_path(folder), real = real_path(folder + "/" + *path);
-    if (!root || !real) return refused("found the name of a file that does not exist, need one in the model's folder");
+    if (!root || !real)
+        return refused("found the name of a missing file; expected an existing file in the model's folder");
     const std::string inside = *root == "/" ? *root : *root + "/";
-    if (!real->starts_with(inside))
-        return refused("found a link that leads out of the model's folder, need a file in it");
+    if (!real->starts_with(inside)) return refused("found a link out of the model's folder; expected a file in it");
     return *real;
 }
 
@@ -79,10 +79,10 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const auto refused = [](std::string problem) { return Error{Status::Format, {}, std::move(problem), {}}; };
     const std::size_t comma = uri.find(',');
     if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64"))
-        return refused("found a data uri of another form, need \"data:…;base64,…\"");
+        return refused("found another form of data uri; expected \"data:…;base64,…\"");
     const std::string_view text = uri.substr(comma + 1);
     if (text.size() % 4 != 0)
-        return refused(fmt::format("found base64 of {} characters, need a multiple of 4", text.size()));
+        return refused(fmt::format("found base64 of {} characters; expected a multiple of 4", text.size()));
     const auto value_of = [](char c) {
         if (c >= 'A' && c <= 'Z') return c - 'A';
         if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -97,7 +97,7 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         const int value = i < text.size() - padding ? value_of(text[i]) : 0;
         if (value < 0)
-            return refused(fmt::format("found the byte {:#04x} at {} of the base64 text, need A-Z, a-z, 0-9, +, /",
+            return refused(fmt::format("found the byte {:#04x} at {} of the base64 text; expected A-Z, a-z, 0-9, +, /",
                                        static_cast<unsigned char>(text[i]), i));
         group = group << 6 | static_cast<std::uint32_t>(value);
         if (i % 4 != 3) continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// The uris of glTF files: paths inside the model's folder, and data in base64.
+/// Uris of glTF files: paths inside the model's folder, and base64 data.
 #include <cstddef>
 #include <span>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace fase::scene {
 
-/// The path that a file of `folder` means by a glTF uri (RFC 3986 reference, percent-decoded). Only relative paths
-/// whose real place, links followed, lies under the folder; Format for absolute ones, schemes, drive letters,
-/// backslashes, NUL, "..", and for files that do not exist. Never goes to the network.
+/// Resolves a glTF uri (RFC 3986 reference, percent-decoded) relative to `folder`. Accepts only relative paths that,
+/// with links resolved, are below the folder. Format for absolute paths, schemes, drive letters, backslashes, NUL,
+/// "..", and files that do not exist. Never accesses the network.
 Result<std::string> resolve_uri(const std::string& folder, std::string_view uri);
 
-/// The bytes of a "data:" uri in base64 (RFC 4648, padding required). Format otherwise.
+/// Decodes a base64 "data:" uri (RFC 4648, padding required). Format for any other uri.
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri);
-/// Base64 with padding.
+/// Encodes bytes as base64 with padding.
 [[nodiscard]] std::string encode_base64(std::span<const std::byte> bytes);
 
 }  // namespace fase::scene

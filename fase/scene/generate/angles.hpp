@@ -1,18 +1,19 @@
 #pragma once
-/// Sine and cosine that have the same bits on every machine, so that generated scenes do.
+/// Sine and cosine with the same bits on every machine, so that generated scenes are reproducible.
 #include "fase/math/quat.hpp"
 
 namespace fase::scene {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// Both at once.
+/// Sine and cosine of one angle.
 struct SinCos {
     double sin = 0, cos = 1;
 };
 
-/// Of an angle in radians, right to 1e-13 for |angle| up to 100. Taylor's series after the angle is brought to within
-/// ±pi/4; only additions and multiplications, so no library's rounding shows.
+/// Returns sine and cosine of an angle in radians, accurate to 1e-13 for |angle| up to 100. Reduces the angle to ±pi/4
+/// and sums the Taylor series. Uses only additions, multiplications and divisions, so it does not depend on a math
+/// library.
 [[nodiscard]] constexpr SinCos sin_cos(double angle) {
     const double quarters = angle * (2 / pi);
     const int turns = static_cast<int>(quarters + (quarters < 0 ? -0.5 : 0.5));
@@ -33,8 +34,8 @@ struct SinCos {
     }
 }
 
-/// Turns by `angle` radians about a unit axis.
-[[nodiscard]] constexpr Quat turned_about(Vec3 axis, double angle) {
+/// Returns the rotation by `angle` radians about a unit axis.
+[[nodiscard]] constexpr Quat rotation_about(Vec3 axis, double angle) {
     const SinCos half = sin_cos(angle / 2);
     const float s = static_cast<float>(half.sin);
     return {axis.x * s, axis.y * s, axis.z * s, static_cast<float>(half.cos)};

@@ -1,4 +1,4 @@
-/// The scenes that the engines of the field are measured on: pyramids, a rock pile, a washer.
+/// Common benchmark scenes of physics engines: pyramids, a rock pile, a washer.
 #include <algorithm>
 #include <cmath>
 
@@ -8,29 +8,29 @@
 namespace fase::scene {
 namespace {
 
-constexpr Stuff stone{"ground", {0.55f, 0.55f, 0.52f}, 1000, {}};
-/// One colour a row, so that a wall's motion can be seen.
+constexpr BodyStyle stone{"ground", {0.55f, 0.55f, 0.52f}, 1000, {}};
+/// One colour per row, so that the motion of a wall is visible.
 constexpr Colour row_colours[]{
     {0.80f, 0.47f, 0.27f}, {0.89f, 0.69f, 0.36f}, {0.45f, 0.60f, 0.64f}, {0.30f, 0.42f, 0.55f}};
 
-/// A wall of unit boxes that stands along x on y = 0; they touch, but do not overlap.
+/// Adds a wall of unit boxes along x on y = 0. The boxes touch but do not overlap.
 void add_wall(Builder& builder, std::uint32_t unit_box, int base, double middle_x, double z) {
     for (int row = 0; row < base; ++row) {
-        const Stuff stuff{"box", row_colours[row % 4], 100, {}};
+        const BodyStyle style{"box", row_colours[row % 4], 100, {}};
         for (int i = 0; i < base - row; ++i) {
             const double x = middle_x + i - 0.5 * (base - row - 1);
-            builder.add(unit_box, stuff, {.position = {x, row + 0.5, z}});
+            builder.add(unit_box, style, {.position = {x, row + 0.5, z}});
         }
     }
 }
 
-/// Floor and four walls around [-half, half]² that nothing of `height` leaves.
-void add_pit(Builder& builder, float half, float height, const Stuff& stuff) {
+/// Adds a floor and four walls of `height` around [-half, half]².
+void add_pit(Builder& builder, float half, float height, const BodyStyle& style) {
     const float thick = 1;
-    builder.static_box({0, -thick, 0}, {half + 2 * thick, thick, half + 2 * thick}, stuff);
+    builder.static_box({0, -thick, 0}, {half + 2 * thick, thick, half + 2 * thick}, style);
     for (const int side : {-1, 1}) {
-        builder.static_box({side * double(half + thick), height / 2, 0}, {thick, height / 2, half + 2 * thick}, stuff);
-        builder.static_box({0, height / 2, side * double(half + thick)}, {half, height / 2, thick}, stuff);
+        builder.static_box({side * double(half + thick), height / 2, 0}, {thick, height / 2, half + 2 * thick}, style);
+        builder.static_box({0, height / 2, side * double(half + thick)}, {half, height / 2, thick}, style);
     }
 }
 
@@ -38,7 +38,7 @@ void add_pit(Builder& builder, float half, float height, const Stuff& stuff) {
 
 Scene make_large_pyramid(const GenerateOptions& options) {
     Builder builder("large_pyramid");
-    // The wall whose boxes come nearest to the count: base (base + 1) / 2.
+    // The largest wall with at most `count` boxes: base (base + 1) / 2.
     const int base =
         std::max(1, static_cast<int>(std::sqrt(2.0 * static_cast<double>(options.count) + 0.25) - 0.5 + 1e-9));
     const float half_width = static_cast<float>(base);
@@ -50,10 +50,10 @@ Scene make_large_pyramid(const GenerateOptions& options) {
 }
 
 Scene make_many_pyramids(const GenerateOptions& options) {
-    constexpr int base = 10, each = base * (base + 1) / 2;
+    constexpr int base = 10, boxes_per_wall = base * (base + 1) / 2;
     constexpr double along = base + 2, apart = 3;
     Builder builder("many_pyramids");
-    const int pyramids = std::max(1, static_cast<int>((options.count + each / 2) / each));
+    const int pyramids = std::max(1, static_cast<int>((options.count + boxes_per_wall / 2) / boxes_per_wall));
     const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(pyramids))));
     const int rows = (pyramids + columns - 1) / columns;
     const float half_x = static_cast<float>(columns * along / 2 + 20),
@@ -83,9 +83,9 @@ Scene make_hull_pile(const GenerateOptions& options) {
     for (int i = 0; i < count; ++i) {
         const int layer = i / (side * side), cell = i % (side * side);
         const double x = (cell % side - 0.5 * (side - 1)) * spacing, z = (cell / side - 0.5 * (side - 1)) * spacing;
-        const Stuff stuff{"rock", row_colours[random.below(4)], 2000, {}};
+        const BodyStyle style{"rock", row_colours[random.below(4)], 2000, {}};
         const std::uint32_t rock = rocks[random.below(rocks.size())];
-        builder.add(rock, stuff, {.position = {x, 1 + spacing * layer, z}, .rotation = any_rotation(random)});
+        builder.add(rock, style, {.position = {x, 1 + spacing * layer, z}, .rotation = random_rotation(random)});
     }
     builder.scene().camera = Camera{{1.8f * half, 4.2f * half, 3.4f * half}, {0, half, 0}};
     return builder.take();
@@ -101,9 +101,9 @@ Scene make_washer(const GenerateOptions& options) {
     const float block = static_cast<float>(pitch) * static_cast<float>(side);
     const float radius = 0.85f * block + 1, half_length = 0.5f * block + 0.2f;
     const double centre = 1.3 * radius + thick;
-    const Stuff steel{"drum", {0.62f, 0.66f, 0.72f, 0.35f}, 7800, {}};
+    const BodyStyle steel{"drum", {0.62f, 0.66f, 0.72f, 0.35f}, 7800, {}};
 
-    // Staves side by side make the tube, paddles lift, two discs close the ends; z is the axis.
+    // The drum around z: staves form the tube, paddles lift the cubes, two plates close the ends.
     const float stave_half =
         (radius + 2 * thick) * static_cast<float>(sin_cos(pi / staves).sin / sin_cos(pi / staves).cos);
     const std::uint32_t stave = builder.shape(Box{{stave_half, thick, half_length + 2 * thick}});
@@ -112,24 +112,26 @@ Scene make_washer(const GenerateOptions& options) {
     Body& drum = builder.add(end, steel, {.position = {0, centre, 0}, .kind = BodyKind::Kinematic});
     drum.colliders[0].def.pose.position = drum.visuals[0].position = {0, 0, -(half_length + thick)};
     builder.attach(drum, end, steel, {{0, 0, half_length + thick}, {}});
-    const auto place = [](int i, int of, float distance) {
-        const double angle = 2 * pi * i / of;
-        const SinCos at = sin_cos(angle);
-        return LocalPose{{static_cast<float>(at.sin) * distance, -static_cast<float>(at.cos) * distance, 0},
-                         turned_about({0, 0, 1}, angle)};
+    const auto pose_on_drum = [](int i, int count, float distance) {
+        const double angle = 2 * pi * i / count;
+        const SinCos direction = sin_cos(angle);
+        return LocalPose{
+            {static_cast<float>(direction.sin) * distance, -static_cast<float>(direction.cos) * distance, 0},
+            rotation_about({0, 0, 1}, angle)};
     };
-    for (int i = 0; i < staves; ++i) builder.attach(drum, stave, steel, place(i, staves, radius + thick));
-    for (int i = 0; i < paddles; ++i) builder.attach(drum, paddle, steel, place(2 * i + 1, 2 * paddles, 0.9f * radius));
+    for (int i = 0; i < staves; ++i) builder.attach(drum, stave, steel, pose_on_drum(i, staves, radius + thick));
+    for (int i = 0; i < paddles; ++i)
+        builder.attach(drum, paddle, steel, pose_on_drum(2 * i + 1, 2 * paddles, 0.9f * radius));
     drum.def.angular_velocity = {0, 0, static_cast<float>(25 * pi / 180)};
     drum.def.can_sleep = false;
 
     const std::uint32_t cube = builder.shape(Box{{half, half, half}});
     for (int y = 0; y < side; ++y) {
-        const Stuff stuff{"cube", row_colours[y * 4 / side], 1000, {}};
+        const BodyStyle style{"cube", row_colours[y * 4 / side], 1000, {}};
         for (int z = 0; z < side; ++z) {
             for (int x = 0; x < side; ++x) {
-                const auto at = [&](int i) { return (i - 0.5 * (side - 1)) * pitch; };
-                builder.add(cube, stuff, {.position = {at(x), centre + at(y), at(z)}});
+                const auto offset = [&](int i) { return (i - 0.5 * (side - 1)) * pitch; };
+                builder.add(cube, style, {.position = {offset(x), centre + offset(y), offset(z)}});
             }
         }
     }

@@ -1,4 +1,4 @@
-/// Shapes, pictures and random forms for the generators.
+/// Shapes, visuals and random values for the generators.
 #include "fase/scene/generate/builder.hpp"
 
 #include <cassert>
@@ -28,29 +28,29 @@ std::uint32_t Builder::hull(const std::vector<Vec3>& points) {
     return hull ? shape(*std::move(hull)) : shape(Box{});
 }
 
-Body& Builder::add(std::uint32_t shape, const Stuff& stuff, const Start& start) {
+Body& Builder::add(std::uint32_t shape, const BodyStyle& style, const InitialState& initial) {
     Body& body = scene_.bodies.emplace_back();
-    body.name = stuff.name;
-    body.def.kind = start.kind;
-    body.def.position = start.position;
-    body.def.rotation = start.rotation;
-    body.def.linear_velocity = start.linear_velocity;
-    body.def.awake = start.awake;
-    attach(body, shape, stuff, {});
+    body.name = style.name;
+    body.def.kind = initial.kind;
+    body.def.position = initial.position;
+    body.def.rotation = initial.rotation;
+    body.def.linear_velocity = initial.linear_velocity;
+    body.def.awake = initial.awake;
+    attach(body, shape, style, {});
     return body;
 }
 
-void Builder::attach(Body& body, std::uint32_t shape, const Stuff& stuff, const LocalPose& pose) {
+void Builder::attach(Body& body, std::uint32_t shape, const BodyStyle& style, const LocalPose& pose) {
     Collider& collider = body.colliders.emplace_back();
     collider.shape = shape;
     collider.def.pose = pose;
-    collider.def.material = stuff.material;
-    collider.def.density = stuff.density;
+    collider.def.material = style.material;
+    collider.def.density = style.density;
     if (scene_.meshes[shape].indices.empty()) return;
-    body.visuals.push_back({shape, pose.position, to_matrix(pose.rotation), stuff.colour});
+    body.visuals.push_back({shape, pose.position, to_matrix(pose.rotation), style.colour});
 }
 
-void Builder::ground(float half_width, const Stuff& stuff) {
+void Builder::ground(float half_width, const BodyStyle& style) {
     const std::uint32_t floor = shape(HalfSpace{});
     Mesh& mesh = scene_.meshes[floor];
     mesh.positions = {{-half_width, 0, -half_width},
@@ -58,14 +58,14 @@ void Builder::ground(float half_width, const Stuff& stuff) {
                       {half_width, 0, half_width},
                       {half_width, 0, -half_width}};
     mesh.indices = {0, 1, 2, 0, 2, 3};
-    add(floor, stuff, {.position = {}, .kind = BodyKind::Static});
+    add(floor, style, {.position = {}, .kind = BodyKind::Static});
 }
 
-void Builder::static_box(Vec3d centre, Vec3 half, const Stuff& stuff) {
-    add(shape(Box{half}), stuff, {.position = centre, .kind = BodyKind::Static});
+void Builder::static_box(Vec3d centre, Vec3 half, const BodyStyle& style) {
+    add(shape(Box{half}), style, {.position = centre, .kind = BodyKind::Static});
 }
 
-Vec3 any_direction(Random& random) {
+Vec3 random_direction(Random& random) {
     for (;;) {
         const Vec3 v{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
         const float l = length_squared(v);
@@ -73,7 +73,7 @@ Vec3 any_direction(Random& random) {
     }
 }
 
-Quat any_rotation(Random& random) {
+Quat random_rotation(Random& random) {
     for (;;) {
         const Quat q{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
         const float l = length_squared(q);
@@ -82,7 +82,7 @@ Quat any_rotation(Random& random) {
 }
 
 std::vector<Vec3> rock_points(Random& random, float radius, int count) {
-    // The first six keep the rock solid whatever the others are.
+    // Six points on the axes guarantee a volume.
     std::vector<Vec3> points;
     for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0f, 1.0f}) {
@@ -92,7 +92,7 @@ std::vector<Vec3> rock_points(Random& random, float radius, int count) {
         }
     }
     while (static_cast<int>(points.size()) < count) {
-        const Vec3 direction = any_direction(random);
+        const Vec3 direction = random_direction(random);
         points.push_back(direction * (radius * random.between(0.75f, 1)));
     }
     return points;

@@ -1,5 +1,5 @@
 #pragma once
-/// What the generators build with: shapes with a picture of themselves, bodies with one or several of them.
+/// Builds the scenes of the generators: shapes with their own meshes, bodies with one or more shapes.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,16 +10,16 @@
 
 namespace fase::scene {
 
-/// What something is made of and how it looks.
-struct Stuff {
-    std::string_view name;  ///< becomes the body's name
+/// Name, colour and physical properties of generated bodies.
+struct BodyStyle {
+    std::string_view name;  ///< name of the bodies
     Colour colour;
     float density = 1000;  ///< kg/m³
     Material material;
 };
 
-/// Where a body begins and how it moves then.
-struct Start {
+/// The initial state of a body.
+struct InitialState {
     Vec3d position = {};
     Quat rotation = {};
     Vec3 linear_velocity = {};
@@ -27,24 +27,24 @@ struct Start {
     bool awake = true;
 };
 
-/// Fills a Scene. Shapes are added once and used by index; each gets a mesh of its own surface, so that the saved scene
-/// shows in any glTF viewer.
+/// Fills a Scene. Shapes are added once and referenced by index. Each shape gets a mesh of its surface, so that every
+/// glTF viewer can show the saved scene.
 class Builder {
 public:
     explicit Builder(std::string_view name) { scene_.name = name; }
 
-    /// A shape to build with. An invalid one is a broken contract.
+    /// Adds a shape and returns its index. Asserts that it is valid.
     std::uint32_t shape(Shape shape);
-    /// The convex hull of the points, which must span a solid: random rocks, wedges, arch stones.
+    /// Adds the convex hull of the points and returns its index. The points must not lie in one plane.
     std::uint32_t hull(const std::vector<Vec3>& points);
-    /// A body of one shape.
-    Body& add(std::uint32_t shape, const Stuff& stuff, const Start& start);
-    /// One more shape on a body.
-    void attach(Body& body, std::uint32_t shape, const Stuff& stuff, const LocalPose& pose);
-    /// Endless ground under y = 0, drawn as a square of `half_width` to each side.
-    void ground(float half_width, const Stuff& stuff);
-    /// A static box that is given by its centre and half sizes.
-    void static_box(Vec3d centre, Vec3 half, const Stuff& stuff);
+    /// Adds a body with one shape.
+    Body& add(std::uint32_t shape, const BodyStyle& style, const InitialState& initial);
+    /// Adds one more shape to a body.
+    void attach(Body& body, std::uint32_t shape, const BodyStyle& style, const LocalPose& pose);
+    /// Adds an infinite ground below y = 0, drawn as a square of half-width `half_width`.
+    void ground(float half_width, const BodyStyle& style);
+    /// Adds a static box; `half` are its half sizes.
+    void static_box(Vec3d centre, Vec3 half, const BodyStyle& style);
 
     Scene& scene() { return scene_; }
     [[nodiscard]] Scene take() { return std::move(scene_); }
@@ -53,14 +53,14 @@ private:
     Scene scene_;
 };
 
-/// The stones of a rock about as large as a ball of `radius`: points on a jittered ball.
+/// Returns `count` points of a random rock: directions on a sphere, at jittered distances up to `radius`.
 [[nodiscard]] std::vector<Vec3> rock_points(Random& random, float radius, int count);
-/// Uniform over all rotations. Source: Marsaglia 1972, Choosing a point from the surface of a sphere.
-[[nodiscard]] Quat any_rotation(Random& random);
-/// Uniform on the unit sphere, by rejection.
-[[nodiscard]] Vec3 any_direction(Random& random);
+/// Returns a uniformly distributed rotation. Source: Marsaglia 1972, Choosing a point from the surface of a sphere.
+[[nodiscard]] Quat random_rotation(Random& random);
+/// Returns a uniformly distributed unit vector, by rejection.
+[[nodiscard]] Vec3 random_direction(Random& random);
 
-inline constexpr Stuff grass{"ground", {0.33f, 0.42f, 0.22f}, 1000, {.friction = 0.7f}};
+inline constexpr BodyStyle grass{"ground", {0.33f, 0.42f, 0.22f}, 1000, {.friction = 0.7f}};
 
 Scene make_castle(const GenerateOptions& options);
 Scene make_large_pyramid(const GenerateOptions& options);

@@ -1,4 +1,4 @@
-/// The default scene: a castle of loose stones, and a volley of heavy balls on its way to it.
+/// The default scene: a castle of loose stones and a volley of heavy balls that hits it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,35 +9,37 @@
 namespace fase::scene {
 namespace {
 
-// The plan, in metres: four towers on a square, walls of two leaves between them, the gate in the wall towards +z.
+// The plan, in metres: four towers on a square, walls of two layers between them, a gate in the wall at +z.
 constexpr int wall_blocks = 17, outer_courses = 10, inner_courses = 8, tower_courses = 17;
 constexpr float tower_radius = 2.4f, outer_depth = 0.5f, inner_depth = 1;
 constexpr double corner = 0.5 * wall_blocks * Masonry::length + tower_radius + 0.001;
 constexpr int gate_blocks = 5, pier_courses = 3, arch_courses = 4;
-constexpr double bodies_each = 3000;
+constexpr double bodies_per_castle = 3000;
 
-/// A wall's two leaves, `first` to `first + courses` of each; higher courses than the inner leaf has go to the outer
-/// one alone.
-struct Leaves {
+/// The two layers of a wall.
+struct WallLayers {
     BlockKind outer, inner;
-    static constexpr float outer_offset = 0.5f, inner_offset = -0.25f;  ///< to the left of the line: outward
+    static constexpr float outer_offset = 0.5f, inner_offset = -0.25f;  ///< to the left of the line, which is outward
 };
 
-void lay_leaves(Masonry& masonry, const Leaves& leaves, const WallLine& line, int blocks, int first, int end) {
-    lay_wall(masonry, leaves.outer, line, Leaves::outer_offset, blocks, first, end - first);
-    lay_wall(masonry, leaves.inner, line, Leaves::inner_offset, blocks, first, std::min(end, inner_courses) - first);
+/// Adds the courses from `first` to before `end`; courses above the inner layer's top are added to the outer layer
+/// only.
+void add_layers(Masonry& masonry, const WallLayers& layers, const WallLine& line, int blocks, int first, int end) {
+    add_wall_courses(masonry, layers.outer, line, WallLayers::outer_offset, blocks, first, end - first);
+    add_wall_courses(masonry, layers.inner, line, WallLayers::inner_offset, blocks, first,
+                     std::min(end, inner_courses) - first);
 }
 
-/// The line of a block further along.
-WallLine further(const WallLine& line, double metres) {
+/// The line that starts `metres` further along.
+WallLine advanced(const WallLine& line, double metres) {
     return {line.start + to_double(line.along) * metres, line.along};
 }
 
-/// Piers, the arch on them, and the courses beside.
-void build_gate(Masonry& masonry, const Leaves& leaves, const WallLine& line) {
+/// Adds piers, the arch on them, and the courses on both sides.
+void build_gate(Masonry& masonry, const WallLayers& layers, const WallLine& line) {
     const float depth = outer_depth + inner_depth, half_width = 0.5f * gate_blocks * Masonry::length;
-    const int beside = (wall_blocks - gate_blocks) / 2;
-    const Vec3d middle = further(line, 0.5 * wall_blocks * Masonry::length).start;
+    const int side_blocks = (wall_blocks - gate_blocks) / 2;
+    const Vec3d middle = advanced(line, 0.5 * wall_blocks * Masonry::length).start;
     const BlockKind pier = make_blocks(masonry, depth);
     for (int course = 0; course < pier_courses; ++course) {
         for (const int side : {-1, 1}) {
@@ -50,14 +52,15 @@ void build_gate(Masonry& masonry, const Leaves& leaves, const WallLine& line) {
     build_arch(masonry, middle + Vec3d{0, pier_courses * double(Masonry::course), 0}, line.along,
                half_width - Masonry::length, half_width, arch_courses * Masonry::course, depth);
     const int top = pier_courses + arch_courses;
-    lay_leaves(masonry, leaves, line, beside, 0, top);
-    lay_leaves(masonry, leaves, further(line, (beside + gate_blocks) * double(Masonry::length)), beside, 0, top);
-    lay_leaves(masonry, leaves, line, wall_blocks, top, outer_courses);
+    add_layers(masonry, layers, line, side_blocks, 0, top);
+    add_layers(masonry, layers, advanced(line, (side_blocks + gate_blocks) * double(Masonry::length)), side_blocks, 0,
+               top);
+    add_layers(masonry, layers, line, wall_blocks, top, outer_courses);
 }
 
 void build_walls(Masonry& masonry, Vec3d centre) {
     Builder& builder = masonry.builder;
-    const Leaves leaves{make_blocks(masonry, outer_depth), make_blocks(masonry, inner_depth)};
+    const WallLayers layers{make_blocks(masonry, outer_depth), make_blocks(masonry, inner_depth)};
     const float plank_half = 0.1f, merlon_half = 0.4f;
     const std::uint32_t merlon =
         builder.shape(Box{{(Masonry::length - Masonry::joint) / 2, merlon_half, (outer_depth - Masonry::joint) / 2}});
@@ -70,84 +73,88 @@ void build_walls(Masonry& masonry, Vec3d centre) {
         const double half = 0.5 * wall_blocks * Masonry::length;
         const WallLine line{centre + to_double(outward) * corner - to_double(along) * half, along};
         if (outward.z > 0.5f) {
-            build_gate(masonry, leaves, line);
+            build_gate(masonry, layers, line);
         } else {
-            lay_leaves(masonry, leaves, line, wall_blocks, 0, outer_courses);
+            add_layers(masonry, layers, line, wall_blocks, 0, outer_courses);
         }
         for (int k = 0; k < wall_blocks; ++k) {
-            Vec3d p =
-                further(line, (k + 0.5) * Masonry::length).start + to_double(outward) * double(Leaves::inner_offset);
+            Vec3d p = advanced(line, (k + 0.5) * Masonry::length).start +
+                      to_double(outward) * double(WallLayers::inner_offset);
             p.y = inner_courses * double(Masonry::course) + plank_half;
             builder.add(plank, wood, {.position = p, .rotation = facing(along)});
         }
-        lay_battlement(masonry, merlon, merlon_half, line, Leaves::outer_offset, wall_blocks,
+        add_battlement(masonry, merlon, merlon_half, line, WallLayers::outer_offset, wall_blocks,
                        outer_courses * double(Masonry::course));
     }
 }
 
-/// Barrels that stand on each other, logs between stones, in the yard.
+/// Adds stacked barrels and piles of logs between stones.
 void fill_yard(Masonry& masonry, Vec3d centre) {
     Builder& builder = masonry.builder;
     constexpr float barrel_radius = 0.35f, barrel_half = 0.45f, log_radius = 0.25f, log_half = 1.2f;
     const std::uint32_t barrel = builder.shape(Cylinder{barrel_radius, barrel_half});
     const std::uint32_t log = builder.shape(Capsule{log_radius, log_half});
-    const std::uint32_t stop = builder.shape(Box{{0.4f, 0.6f, 1}});
-    const Stuff oak{"barrel", {0.42f, 0.26f, 0.12f}, 800, {}};
-    const Stuff trunk{"log", {0.50f, 0.36f, 0.20f}, 700, {}};
+    const std::uint32_t block = builder.shape(Box{{0.4f, 0.6f, 1}});
+    const BodyStyle oak{"barrel", {0.42f, 0.26f, 0.12f}, 800, {}};
+    const BodyStyle wood_log{"log", {0.50f, 0.36f, 0.20f}, 700, {}};
     for (const double x : {-6.5, 6.5}) {
         for (int layer = 0; layer < 3; ++layer) {
             for (int i = 0; i < (3 - layer) * (3 - layer); ++i) {
-                const auto at = [&](int k) { return (k - 0.5 * (2 - layer)) * (2 * double(barrel_radius) + 0.001); };
-                builder.add(barrel, oak,
-                            {.position = centre + Vec3d{x + at(i % (3 - layer)), (2 * layer + 1) * double(barrel_half),
-                                                        6.5 + at(i / (3 - layer))}});
+                const auto offset = [&](int k) {
+                    return (k - 0.5 * (2 - layer)) * (2 * double(barrel_radius) + 0.001);
+                };
+                builder.add(
+                    barrel, oak,
+                    {.position = centre + Vec3d{x + offset(i % (3 - layer)), (2 * layer + 1) * double(barrel_half),
+                                                6.5 + offset(i / (3 - layer))}});
             }
         }
     }
     const double pitch = 2 * double(log_radius) + 0.001,
                  rise = std::sqrt((2 * double(log_radius) + 0.0002) * (2 * double(log_radius) + 0.0002) -
                                   pitch * pitch / 4);
-    const Quat lying{0.70710678f, 0, 0, 0.70710678f};
+    const Quat horizontal{0.70710678f, 0, 0, 0.70710678f};
     for (const double x : {-6.5, 6.5}) {
-        const Vec3d foot = centre + Vec3d{x, 0, -6};
+        const Vec3d base = centre + Vec3d{x, 0, -6};
         for (int layer = 0; layer < 3; ++layer) {
             for (int i = 0; i < 4 - layer; ++i) {
-                builder.add(log, trunk,
-                            {.position = foot + Vec3d{(i - 0.5 * (3 - layer)) * pitch, log_radius + layer * rise, 0},
-                             .rotation = lying});
+                builder.add(log, wood_log,
+                            {.position = base + Vec3d{(i - 0.5 * (3 - layer)) * pitch, log_radius + layer * rise, 0},
+                             .rotation = horizontal});
             }
         }
         for (const int side : {-1, 1}) {
-            builder.add(stop, stone_of(masonry, "stone"),
-                        {.position = foot + Vec3d{side * (2 * pitch + 0.4005), 0.6f, 0}});
+            builder.add(block, stone_of(masonry, "stone"),
+                        {.position = base + Vec3d{side * (2 * pitch + 0.4005), 0.6f, 0}});
         }
     }
 }
 
-/// Rocks strewn around the walls, apart from each other, a hand above the grass.
-void strew_rocks(Masonry& masonry, Vec3d centre, int count) {
+/// Scatters rocks around the walls, apart from each other and slightly above the ground.
+void scatter_rocks(Masonry& masonry, Vec3d centre, int count) {
     std::vector<std::uint32_t> forms;
     for (int i = 0; i < 8; ++i)
         forms.push_back(masonry.builder.hull(rock_points(masonry.random, masonry.random.between(0.3f, 0.8f), 12 + i)));
     for (int i = 0; i < count; ++i) {
-        // On rings three metres apart, in slots of an angle each: no two meet.
+        // Three rings, 3 m apart, with one angular slot per rock: no two rocks touch.
         const int ring = i % 3;
-        const SinCos at = sin_cos(2 * pi * (i / 3 + 0.6 * double(masonry.random.unit())) / ((count + 2) / 3));
-        const double far = 20 + 3 * ring + double(masonry.random.unit());
-        // Drawn one after the other: the order of arguments is the compiler's own.
+        const SinCos direction = sin_cos(2 * pi * (i / 3 + 0.6 * double(masonry.random.unit())) / ((count + 2) / 3));
+        const double distance = 20 + 3 * ring + double(masonry.random.unit());
+        // Separate statements: the compiler may evaluate arguments in any order.
         const std::uint32_t form = forms[masonry.random.below(forms.size())];
-        const Stuff stuff = stone_of(masonry, "rock");
-        const Quat turn = any_rotation(masonry.random);
-        masonry.builder.add(form, stuff,
-                            {.position = centre + Vec3d{far * at.cos, 0.9, far * at.sin}, .rotation = turn});
+        const BodyStyle style = stone_of(masonry, "rock");
+        const Quat rotation = random_rotation(masonry.random);
+        masonry.builder.add(form, style,
+                            {.position = centre + Vec3d{distance * direction.cos, 0.9, distance * direction.sin},
+                             .rotation = rotation});
     }
 }
 
-/// One ball of the volley: when it arrives, where, and from which side (radians from the gate's front).
+/// One ball of the volley.
 struct Shot {
-    double seconds;
+    double seconds;  ///< time of impact
     Vec3 target;
-    double side;
+    double side;  ///< direction that it comes from, radians from the front of the gate
     float radius;
 };
 
@@ -162,22 +169,22 @@ void fire_volley(Masonry& masonry, Vec3d centre, Vec3 gravity) {
         {9.2, {1, 5, 3}, 0.2, 1.3f},
     };
     Builder& builder = masonry.builder;
-    const Stuff boulder{"boulder", {0.30f, 0.28f, 0.27f}, 2700, {}};
+    const BodyStyle boulder{"boulder", {0.30f, 0.28f, 0.27f}, 2700, {}};
     int number = 0;
     for (const Shot& shot : shots) {
-        const bool round = number++ % 4 != 3;
-        const std::uint32_t shape = round ? builder.shape(Sphere{shot.radius})
-                                          : builder.hull(rock_points(masonry.random, 1.25f * shot.radius, 24));
-        // Where it is now, that it meets its target after so many seconds of free flight.
+        const bool is_ball = number++ % 4 != 3;
+        const std::uint32_t shape = is_ball ? builder.shape(Sphere{shot.radius})
+                                            : builder.hull(rock_points(masonry.random, 1.25f * shot.radius, 24));
+        // The start position and the velocity that hit the target after `seconds` of free flight.
         const SinCos side = sin_cos(shot.side);
         const Vec3d target = centre + to_double(shot.target);
-        const double far = 24 * shot.seconds + 12;
-        const Vec3d now{centre.x + far * side.sin, 8 + 6 * shot.seconds, centre.z + far * side.cos};
-        const Vec3d velocity = (target - now) * (1 / shot.seconds) - to_double(gravity) * (shot.seconds / 2);
+        const double distance = 24 * shot.seconds + 12;
+        const Vec3d start{centre.x + distance * side.sin, 8 + 6 * shot.seconds, centre.z + distance * side.cos};
+        const Vec3d velocity = (target - start) * (1 / shot.seconds) - to_double(gravity) * (shot.seconds / 2);
         Body& ball =
-            builder.add(shape, round ? iron : boulder, {.position = now, .linear_velocity = to_float(velocity)});
-        ball.def.angular_velocity = any_direction(masonry.random) * 3;
-        ball.def.angular_damping = 1;  // they roll in grass
+            builder.add(shape, is_ball ? iron : boulder, {.position = start, .linear_velocity = to_float(velocity)});
+        ball.def.angular_velocity = random_direction(masonry.random) * 3;
+        ball.def.angular_damping = 1;  // rolling resistance of grass
     }
 }
 
@@ -186,7 +193,7 @@ void fire_volley(Masonry& masonry, Vec3d centre, Vec3 gravity) {
 Scene make_castle(const GenerateOptions& options) {
     Builder builder("castle");
     builder.ground(300, grass);
-    const int castles = std::max(1, static_cast<int>(static_cast<double>(options.count) / bodies_each + 0.5));
+    const int castles = std::max(1, static_cast<int>(static_cast<double>(options.count) / bodies_per_castle + 0.5));
     const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(castles))));
     for (int i = 0; i < castles; ++i) {
         Masonry masonry{builder, Random(options.seed, static_cast<std::uint64_t>(i))};
@@ -198,10 +205,10 @@ Scene make_castle(const GenerateOptions& options) {
         build_walls(masonry, centre);
         build_keep(masonry, centre + Vec3d{0, 0, -1.5}, 7, 21);
         fill_yard(masonry, centre);
-        strew_rocks(masonry, centre, 120);
+        scatter_rocks(masonry, centre, 120);
         fire_volley(masonry, centre, builder.scene().gravity);
     }
-    for (Body& body : builder.scene().bodies)  // what falls on rubble does not rock for ever
+    for (Body& body : builder.scene().bodies)  // stops endless rocking of stones on rubble
         if (body.def.kind == BodyKind::Dynamic && body.def.angular_damping == 0) body.def.angular_damping = 0.2f;
     builder.scene().camera = Camera{{27, 17, 38}, {0, 3, 0}};
     return builder.take();

@@ -1,5 +1,5 @@
 #pragma once
-/// Stones and how they are laid: courses of blocks, rings of wedges, an arch.
+/// Builds masonry from loose stones: walls of blocks, towers of wedges, an arch.
 #include <array>
 #include <vector>
 
@@ -7,55 +7,55 @@
 
 namespace fase::scene {
 
-/// What a mason has at hand. Stones of one course stand `joint` apart; courses lie on each other without a gap.
+/// Context of all masonry functions. Stones of one course are `joint` apart; courses rest on each other without a gap.
 struct Masonry {
     Builder& builder;
     Random random;
     static constexpr float joint = 0.0005f;  ///< metres
     static constexpr float course = 0.5f;    ///< height of a course
-    static constexpr float length = 1;       ///< of a block with its joint
+    static constexpr float length = 1;       ///< of a block including its joint
 };
 
-/// Where a straight wall runs: from `start` (middle of its end face, ground level) along a unit direction that lies in
-/// the ground.
+/// The line of a straight wall: from `start` (middle of its end face, at ground level) along a horizontal unit vector.
 struct WallLine {
     Vec3d start;
     Vec3 along{1, 0, 0};
 };
 
-/// One size of block: its full and its half length.
+/// Blocks of one depth: shapes of full and of half length.
 struct BlockKind {
     std::uint32_t full = 0, half = 0;
     float depth = 0;
 };
+/// Adds the shapes of blocks of one depth.
 [[nodiscard]] BlockKind make_blocks(Masonry& masonry, float depth);
 
-/// Lays `courses` courses of `blocks` blocks in running bond, from course number `first` on (which tells how the bond
-/// begins). `offset` moves the wall sideways, to the left of its direction.
-void lay_wall(Masonry& masonry, const BlockKind& kind, const WallLine& line, float offset, int blocks, int first,
-              int courses);
+/// Adds `courses` courses of `blocks` blocks in running bond, from course number `first` on; odd courses start with a
+/// half block. `offset` moves the wall to the left of its direction.
+void add_wall_courses(Masonry& masonry, const BlockKind& kind, const WallLine& line, float offset, int blocks,
+                      int first, int courses);
 
-/// Every second of `blocks` blocks: battlements at height `y`.
-void lay_battlement(Masonry& masonry, std::uint32_t merlon, float half_height, const WallLine& line, float offset,
+/// Adds battlements at height `y`: every second one of `blocks` blocks.
+void add_battlement(Masonry& masonry, std::uint32_t merlon, float half_height, const WallLine& line, float offset,
                     int blocks, double y);
 
-/// A round tower of wedge stones with a wooden floor on top and battlements; `roofed`: with a cone on those.
+/// Adds a round tower of wedge stones with a wooden deck and battlements; `roofed`: and a cone as its roof.
 void build_tower(Masonry& masonry, Vec3d foot, float outer, int courses, bool roofed);
 
-/// A square tower laid course over course the other way around, roofed with beams, with battlements.
+/// Adds a square tower whose courses alternate in direction, with a roof of beams and battlements.
 void build_keep(Masonry& masonry, Vec3d foot, int blocks, int courses);
 
-/// The stones of an arch of inner radius `radius` that fill the rectangle from -half_width to half_width and from 0 to
-/// `height`, `depth` thick (along the line's left). Stands with its springing at `middle`.
+/// Adds the stones of an arch of inner radius `radius`. They fill the rectangle from -half_width to half_width and from
+/// 0 to `height`, and are `depth` thick. `middle` is the centre of the arch's base line.
 void build_arch(Masonry& masonry, Vec3d middle, Vec3 along, float radius, float half_width, float height, float depth);
 
-/// The stone's colour: one of a few close tones.
-[[nodiscard]] Stuff stone_of(Masonry& masonry, std::string_view name);
-/// Turns x to `along`, which lies in the ground.
+/// Returns the properties of a stone, with a random grey tone.
+[[nodiscard]] BodyStyle stone_of(Masonry& masonry, std::string_view name);
+/// Returns the rotation that turns x to the horizontal unit vector `along`.
 [[nodiscard]] Quat facing(Vec3 along);
 
-inline constexpr Stuff wood{"beam", {0.36f, 0.22f, 0.12f}, 700, {.friction = 0.6f}};
-inline constexpr Stuff tiles{"roof", {0.48f, 0.16f, 0.10f}, 500, {.friction = 0.6f}};
-inline constexpr Stuff iron{"ball", {0.06f, 0.06f, 0.07f}, 7800, {.friction = 0.5f}};
+inline constexpr BodyStyle wood{"beam", {0.36f, 0.22f, 0.12f}, 700, {.friction = 0.6f}};
+inline constexpr BodyStyle tiles{"roof", {0.48f, 0.16f, 0.10f}, 500, {.friction = 0.6f}};
+inline constexpr BodyStyle iron{"ball", {0.06f, 0.06f, 0.07f}, 7800, {.friction = 0.5f}};
 
 }  // namespace fase::scene

@@ -1,4 +1,4 @@
-/// Walks the nodes of the scene, parents first, and makes bodies, colliders and pictures of them.
+/// Visits the nodes of the scene, parents first, and creates bodies, colliders and visuals.
 #include "fase/scene/gltf/assemble.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "fase/core/no_index.hpp"
 #include "fase/geometry/hull_builder.hpp"
 #include "fase/geometry/scaled.hpp"
 #include "fase/scene/gltf/masses.hpp"
@@ -17,10 +18,8 @@
 namespace fase::scene::gltf {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
-
-/// Extensions that change only what the picture looks like: a file that requires them can be read without.
-bool only_looks(std::string_view extension) {
+/// Whether an extension affects only the appearance: a file that requires it can be read without it.
+bool affects_only_appearance(std::string_view extension) {
     for (const std::string_view prefix : {"KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_",
                                           "EXT_lights_", "MSFT_texture_", "KHR_animation_"}) {
         if (extension.starts_with(prefix)) return true;
@@ -28,7 +27,7 @@ bool only_looks(std::string_view extension) {
     return false;
 }
 
-bool is_understood(std::string_view extension) {
+bool is_supported(std::string_view extension) {
     for (const std::string_view name : {"KHR_implicit_shapes", "KHR_physics_rigid_bodies", "KHR_collision_shapes",
                                         "KHR_rigid_bodies", "OMI_physics_shape", "OMI_physics_body", "OMI_collider",
                                         "OMI_physics_gravity", "OMI_physics_joint", "KHR_mesh_quantization"}) {
@@ -37,8 +36,9 @@ bool is_understood(std::string_view extension) {
     return false;
 }
 
-/// Numbers that are 0, 1 or -1 but for rounding made exactly so: unscaled nodes then keep their shapes as they are.
-Mat3d tidied(Mat3d m) {
+/// Replaces elements that are 0, 1 or -1 except for rounding by the exact number, so that shapes of unscaled nodes stay
+/// unchanged.
+Mat3d snapped(Mat3d m) {
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) {
             const double nearest = std::round(m[column][row]);
@@ -50,15 +50,15 @@ Mat3d tidied(Mat3d m) {
 
 bool is_rotation(const Mat3d& m) {
     const Mat3d product = transpose(m) * m;
-    double worst = 0;
+    double max_error = 0;
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row)
-            worst = std::max(worst, std::abs(product[column][row] - (row == column ? 1 : 0)));
+            max_error = std::max(max_error, std::abs(product[column][row] - (row == column ? 1 : 0)));
     }
-    return worst < 1e-6 && determinant(m) > 0;
+    return max_error < 1e-6 && determinant(m) > 0;
 }
 
-std::optional<JsonValue> own_extras(JsonValue json) {
+std::optional<JsonValue> fase_extras(JsonValue json) {
     const std::optional<JsonValue> extras = json.find("extras");
     return extras && extras->is(JsonKind::Object) && extras->find("fase") ? member(*extras, "fase", JsonKind::Object)
                                                                           : std::nullopt;
@@ -70,14 +70,14 @@ std::uint64_t user_number(JsonValue extras, std::string_view key) {
     std::uint64_t number = 0;
     const auto [end, problem] = std::from_chars(text->data(), text->data() + text->size(), number);
     if (problem != std::errc() || end != text->data() + text->size())
-        refuse(*extras.find(key), fmt::format("found {}, need a whole number as text", quoted_short(*text)));
+        refuse(*extras.find(key), fmt::format("found {}; expected a whole number as text", quoted_short(*text)));
     return number;
 }
 
 class Assembler {
 public:
     explicit Assembler(Document& document)
-        : document_(document), physics_(document, notes_), owners_(document.nodes().size(), none) {}
+        : document_(document), physics_(document, warnings_), owners_(document.nodes().size(), no_index) {}
 
     Scene run() {
         read_head();
@@ -87,19 +87,19 @@ public:
         }
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             if (frames_[i].motion)
-                settle_mass(scene_, scene_.bodies[i], *frames_[i].motion, frames_[i].node_linear, notes_);
+                complete_mass(scene_, scene_.bodies[i], *frames_[i].motion, frames_[i].node_linear, warnings_);
         }
         resolve_joints();
-        scene_.warnings = notes_.texts();
+        scene_.warnings = warnings_.texts();
         return std::move(scene_);
     }
 
 private:
-    /// What is known of a body beyond its definition.
+    /// Data of a body that is only needed while reading.
     struct Frame {
         Vec3d position;
         Quatd rotation;
-        Mat3d node_linear = Mat3d::identity();  ///< takes vectors of the node's frame to the body's
+        Mat3d node_linear = Mat3d::identity();  ///< maps vectors from the node's frame to the body's
         std::optional<Motion> motion;
     };
     struct PendingJoint {
@@ -116,7 +116,7 @@ private:
             if (!list) return all;
             list->for_each_element([&](JsonValue name) {
                 if (!name.is(JsonKind::String))
-                    refuse(name, fmt::format("found {}, need a text", name_of(name.kind())));
+                    refuse(name, fmt::format("found {}; expected a text", name_of(name.kind())));
                 all.emplace_back(name.string());
             });
             return all;
@@ -125,22 +125,21 @@ private:
         scene_.extensions_used = names("extensionsUsed");
         scene_.extensions_required = names("extensionsRequired");
         for (const std::string& name : scene_.extensions_required) {
-            if (is_understood(name) || only_looks(name)) continue;
-            throw Refusal{
-                {Status::Unsupported, "/extensionsRequired",
-                 fmt::format("found the extension {}, which the file cannot be read without", quoted_short(name)),
-                 "save it without"}};
+            if (is_supported(name) || affects_only_appearance(name)) continue;
+            throw Refusal{{Status::Unsupported, "/extensionsRequired",
+                           fmt::format("found the required extension {}; expected a supported one", quoted_short(name)),
+                           "save the file without it"}};
         }
         for (const std::string& name : scene_.extensions_used) {
-            if (!is_understood(name)) notes_.add(fmt::format("extension {} is not understood", quoted_short(name)));
+            if (!is_supported(name)) warnings_.add(fmt::format("extension {} is not supported", quoted_short(name)));
         }
         for (const auto& [key, text] : {std::pair{"animations", "animations are not played"},
                                         {"skins", "skins are not applied"},
-                                        {"textures", "textures are not shown"}}) {
-            if (root.find(key)) notes_.add(text);
+                                        {"textures", "textures are not drawn"}}) {
+            if (root.find(key)) warnings_.add(text);
         }
         if (const std::optional<Vec3> gravity = physics_.gravity()) scene_.gravity = *gravity;
-        if (const std::optional<JsonValue> own = own_extras(root)) {
+        if (const std::optional<JsonValue> own = fase_extras(root)) {
             if (const auto step = optional_number(*own, "timeStep"))
                 scene_.settings.time_step = static_cast<float>(*step);
             if (const auto steps = whole_in(*own, "subSteps", 1000))
@@ -152,36 +151,36 @@ private:
 
     void visit(std::uint32_t node, const Placement& place) {
         const JsonValue json = document_.nodes()[node];
-        const std::optional<JsonValue> own = own_extras(json);
+        const std::optional<JsonValue> own = fase_extras(json);
         const std::optional<std::uint32_t> parent = document_.parent(node);
-        std::uint32_t owner = parent ? owners_[*parent] : none;
+        std::uint32_t owner = parent ? owners_[*parent] : no_index;
         std::optional<Motion> motion = physics_.motion(node);
         const bool group = own && flag_in(*own, "static", false);
         if (motion || group) owner = add_body(node, place, motion, own);
         const std::vector<ColliderUse> uses = physics_.colliders(node);
         for (const ColliderUse& use : uses) {
-            // Without a body above it a collider stands still: a static body of its own, which its descendants do not
-            // belong to.
+            // Without a body above it, a collider becomes a separate static body, which its descendants do not belong
+            // to.
             std::uint32_t body = owner;
-            if (body == none)
-                body = alone_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
-                                      : add_body(node, place, std::nullopt, std::nullopt);
-            if (owner == none) alone_ = node;
+            if (body == no_index)
+                body = static_node_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
+                                            : add_body(node, place, std::nullopt, std::nullopt);
+            if (owner == no_index) static_node_ = node;
             add_collider(node, place, body, use, own);
         }
-        if (alone_ == node && scene_.bodies.back().colliders.empty()) {  // all its colliders were left out
+        if (static_node_ == node && scene_.bodies.back().colliders.empty()) {  // all its colliders were skipped
             scene_.bodies.pop_back();
             frames_.pop_back();
-            alone_ = none;
+            static_node_ = no_index;
         }
         owners_[node] = owner;
         if (const auto mesh = index_in(json, "mesh", document_.meshes().size(), "meshes")) {
             add_visuals(*mesh, place,
-                        owner != none    ? owner
-                        : alone_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
-                                         : none);
+                        owner != no_index      ? owner
+                        : static_node_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
+                                               : no_index);
         }
-        if (json.find("skin")) notes_.add("skins are not applied");
+        if (json.find("skin")) warnings_.add("skins are not applied");
         if (auto joint = physics_.joint(node)) joints_.push_back({node, *joint});
         if (const auto camera = json.find("camera")) read_camera(*camera, place, own);
     }
@@ -190,7 +189,7 @@ private:
                            std::optional<JsonValue> own) {
         const JsonValue json = document_.nodes()[node];
         if (std::max({std::abs(place.position.x), std::abs(place.position.y), std::abs(place.position.z)}) > 1e7) {
-            refuse(json, fmt::format("found the place ({:g}, {:g}, {:g}), need it within 1e7 m of the origin",
+            refuse(json, fmt::format("found the position ({:g}, {:g}, {:g}); expected it within 1e7 m of the origin",
                                      place.position.x, place.position.y, place.position.z));
         }
         Body body;
@@ -199,11 +198,12 @@ private:
         body.def.kind = motion ? motion->kind : BodyKind::Static;
         body.def.position = place.position;
         body.def.rotation = to_float(place.rotation);
-        frame.node_linear = tidied(transpose(to_matrix(normalized(place.rotation))) * place.linear);
+        frame.node_linear = snapped(transpose(to_matrix(normalized(place.rotation))) * place.linear);
         if (motion && motion->kind != BodyKind::Static) {
             const auto speed = [&](Vec3d v, std::string_view key) {
                 if (length(v) > 1e9)
-                    refuse(*motion->json.find(key), fmt::format("found a speed of {:g}, need at most 1e9", length(v)));
+                    refuse(*motion->json.find(key),
+                           fmt::format("found a speed of {:g}; expected at most 1e9", length(v)));
                 return to_float(rotate(normalized(place.rotation), v));
             };
             body.def.linear_velocity = speed(motion->linear, "linearVelocity");
@@ -231,15 +231,16 @@ private:
                       std::optional<JsonValue> own) {
         const JsonValue json = document_.nodes()[node];
         const Frame& frame = frames_[body_index];
-        const Mat3d back = transpose(to_matrix(normalized(frame.rotation)));
-        const Mat3d linear = tidied(back * place.linear);
-        const Vec3d position = back * (place.position - frame.position) + linear * to_double(use.source->offset);
+        const Mat3d body_from_world = transpose(to_matrix(normalized(frame.rotation)));
+        const Mat3d linear = snapped(body_from_world * place.linear);
+        const Vec3d position =
+            body_from_world * (place.position - frame.position) + linear * to_double(use.source->offset);
         Collider collider;
         collider.def.pose.position = checked_float(json, position);
         if (!place_shape(json, use, linear, collider)) return;
         if (std::holds_alternative<HalfSpace>(scene_.shapes[collider.shape]) &&
             scene_.bodies[body_index].def.kind == BodyKind::Dynamic) {
-            notes_.add("endless planes on moving bodies are left out");
+            warnings_.add("infinite planes on moving bodies are skipped");
             return;
         }
         collider.name = document_.name(node) == scene_.bodies[body_index].name ? std::string() : document_.name(node);
@@ -257,39 +258,40 @@ private:
 
     static Vec3 checked_float(JsonValue json, Vec3d v) {
         if (!(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) < 1e9))
-            refuse(json, "found a node more than 1e9 m away, need it nearer");
+            refuse(json, "found a node more than 1e9 m from the origin; expected it nearer");
         return to_float(v);
     }
 
-    /// Finds or makes the shape as `linear` leaves it, and the turn of its frame. False: left out, and noted why.
+    /// Sets the collider's shape, transformed by `linear`, and the rotation of its frame. False: skipped, with a
+    /// warning.
     bool place_shape(JsonValue node, const ColliderUse& use, const Mat3d& linear, Collider& collider) {
         const ShapeSource& source = *use.source;
         if (!source.shape && !source.mesh && !source.node) {
-            notes_.add("colliders without a shape that is understood are left out");
+            warnings_.add("colliders without a supported shape are skipped");
             return false;
         }
         if (!source.shape && !source.convex) {
-            notes_.add("triangle-mesh colliders are not simulated yet");
+            warnings_.add("triangle-mesh colliders are not simulated yet");
             return false;
         }
         if (!(std::abs(determinant(linear)) > 1e-18)) {
-            notes_.add("colliders of nodes that are scaled to nothing are left out");
+            warnings_.add("colliders of nodes with a zero scale are skipped");
             return false;
         }
         const bool rigid = is_rotation(linear);
         if (rigid) collider.def.pose.rotation = linear == Mat3d::identity() ? Quat{} : to_float(to_quat(linear));
         const Mat3 map = rigid ? Mat3::identity() : to_float(linear);
         const MapKey key{map.x.x, map.x.y, map.x.z, map.y.x, map.y.y, map.y.z, map.z.x, map.z.y, map.z.z};
-        const auto [at, fresh] = shapes_.try_emplace({&source, key}, none, Quat{});
-        if (fresh) {
+        const auto [entry, inserted] = shapes_.try_emplace({&source, key}, no_index, Quat{});
+        if (inserted) {
             if (source.shape)
-                make_scaled(node, *source.shape, rigid, map, at->second);
+                make_scaled(node, *source.shape, rigid, map, entry->second);
             else
-                make_hull(source, map, at->second);
+                make_hull(source, map, entry->second);
         }
-        collider.shape = at->second.first;
-        if (!rigid) collider.def.pose.rotation = at->second.second;
-        return collider.shape != none;
+        collider.shape = entry->second.first;
+        if (!rigid) collider.def.pose.rotation = entry->second.second;
+        return collider.shape != no_index;
     }
 
     std::uint32_t add_shape(Shape shape) {
@@ -303,10 +305,10 @@ private:
             out.first = add_shape(shape);
             return;
         }
-        Result<TurnedShape> turned = transformed(shape, map);
-        if (!turned) refuse(node, turned.error().problem, turned.error().remedy);
-        document_.spend(node, turned->shape);
-        out = {add_shape(std::move(turned->shape)), turned->rotation};
+        Result<RotatedShape> scaled = transformed(shape, map);
+        if (!scaled) refuse(node, scaled.error().problem, scaled.error().remedy);
+        document_.spend(node, scaled->shape);
+        out = {add_shape(std::move(scaled->shape)), scaled->rotation};
     }
 
     void make_hull(const ShapeSource& source, const Mat3& map, std::pair<std::uint32_t, Quat>& out) {
@@ -327,7 +329,7 @@ private:
         }
         Result<ConvexHull> hull = build_convex_hull(points);
         if (!hull) {
-            notes_.add(fmt::format("a convex collider is left out: {}", hull.error().problem));
+            warnings_.add(fmt::format("a convex collider is skipped: {}", hull.error().problem));
             return;
         }
         out.first = add_shape(*std::move(hull));
@@ -336,46 +338,46 @@ private:
 
     void add_visuals(std::uint32_t mesh, const Placement& place, std::uint32_t body) {
         Visual visual;
-        Mat3d linear = tidied(place.linear);
+        Mat3d linear = snapped(place.linear);
         Vec3d position = place.position;
-        if (body != none) {
-            const Mat3d back = transpose(to_matrix(normalized(frames_[body].rotation)));
-            linear = tidied(back * place.linear);
-            position = back * (place.position - frames_[body].position);
+        if (body != no_index) {
+            const Mat3d body_from_world = transpose(to_matrix(normalized(frames_[body].rotation)));
+            linear = snapped(body_from_world * place.linear);
+            position = body_from_world * (place.position - frames_[body].position);
         }
         visual.position = checked_float(document_.meshes()[mesh], position);
         visual.linear = to_float(linear);
         for (const Primitive& primitive : document_.primitives(mesh)) {
             if (primitive.mode < 4) {
-                notes_.add("points and lines are not shown");
+                warnings_.add("points and lines are not drawn");
                 continue;
             }
             visual.mesh = mesh_of(primitive);
             visual.colour = document_.colour(primitive.material);
-            (body == none ? scene_.scenery : scene_.bodies[body].visuals).push_back(visual);
+            (body == no_index ? scene_.scenery : scene_.bodies[body].visuals).push_back(visual);
         }
     }
 
     std::uint32_t mesh_of(const Primitive& primitive) {
-        const auto [at, fresh] =
-            meshes_.try_emplace({primitive.positions, primitive.indices.value_or(none), primitive.mode}, none);
-        if (!fresh) return at->second;
+        const auto [entry, inserted] =
+            meshes_.try_emplace({primitive.positions, primitive.indices.value_or(no_index), primitive.mode}, no_index);
+        if (!inserted) return entry->second;
         Mesh mesh;
         mesh.name = std::string(text_in(document_.meshes()[primitive.mesh], "name").value_or(""));
         mesh.positions = document_.positions(primitive);
         mesh.indices = document_.triangles(primitive, mesh.positions.size());
         scene_.meshes.push_back(std::move(mesh));
-        at->second = static_cast<std::uint32_t>(scene_.meshes.size() - 1);
-        return at->second;
+        entry->second = static_cast<std::uint32_t>(scene_.meshes.size() - 1);
+        return entry->second;
     }
 
     void read_camera(JsonValue index, const Placement& place, std::optional<JsonValue> own) {
         const std::optional<JsonValue> cameras = member(document_.root(), "cameras", JsonKind::Array);
-        const std::uint32_t wanted = index_of(index, cameras ? cameras->size() : 0, "cameras");
+        const std::uint32_t camera_index = index_of(index, cameras ? cameras->size() : 0, "cameras");
         if (scene_.camera) return;
         std::uint32_t number = 0;
         cameras->for_each_element([&](JsonValue camera) {
-            if (number++ != wanted) return;
+            if (number++ != camera_index) return;
             const std::optional<JsonValue> perspective = member(camera, "perspective", JsonKind::Object);
             if (!perspective) return;
             const double angle = number_in(*perspective, "yfov", 0.8);
@@ -390,8 +392,8 @@ private:
     void resolve_joints() {
         for (const PendingJoint& pending : joints_) {
             const auto body = [&](std::uint32_t node) -> std::optional<std::uint32_t> {
-                for (std::optional<std::uint32_t> at = node; at; at = document_.parent(*at)) {
-                    if (owners_[*at] != none) return owners_[*at];
+                for (std::optional<std::uint32_t> i = node; i; i = document_.parent(*i)) {
+                    if (owners_[*i] != no_index) return owners_[*i];
                 }
                 return std::nullopt;
             };
@@ -401,12 +403,12 @@ private:
     }
 
     Document& document_;
-    Notes notes_;
+    Warnings warnings_;
     Physics physics_;
     Scene scene_;
-    std::vector<Frame> frames_;          ///< beside scene_.bodies
-    std::vector<std::uint32_t> owners_;  ///< of each node: the body that moves it
-    std::uint32_t alone_ = none;         ///< the node whose colliders the last static body was made for
+    std::vector<Frame> frames_;             ///< parallel to scene_.bodies
+    std::vector<std::uint32_t> owners_;     ///< by node: the body that moves it
+    std::uint32_t static_node_ = no_index;  ///< the node for whose colliders the last static body was created
     std::vector<PendingJoint> joints_;
     std::map<std::pair<const ShapeSource*, MapKey>, std::pair<std::uint32_t, Quat>> shapes_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint64_t>, std::uint32_t> meshes_;

@@ -1,10 +1,10 @@
 #pragma once
-/// From a checked document to a Scene. Used inside the glTF reader only.
+/// Converts a checked document to a Scene. Internal to the glTF reader.
 #include "fase/scene/gltf/document.hpp"
 
 namespace fase::scene::gltf {
 
-/// Builds the scene; throws Refusal.
+/// Builds the scene. Throws Refusal.
 Scene assemble(Document& document);
 
 }  // namespace fase::scene::gltf

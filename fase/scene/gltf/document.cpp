@@ -1,4 +1,4 @@
-/// Opens the container, checks the JSON's structure, builds the tree of nodes.
+/// Reads the container, checks the structure of the JSON, builds the tree of nodes.
 #include "fase/scene/gltf/document.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "fase/core/no_index.hpp"
+
 namespace fase::scene::gltf {
 namespace {
-
-constexpr std::uint32_t no_parent = 0xffffffff;
 
 std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t offset) {
     std::uint32_t value = 0;
@@ -19,7 +19,7 @@ std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t offset) {
     return value;
 }
 
-std::string byte(std::size_t offset) { return "byte " + std::to_string(offset); }
+std::string byte_text(std::size_t offset) { return "byte " + std::to_string(offset); }
 
 std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -30,16 +30,15 @@ bool is_finite(const Placement& p) {
            fase::is_finite(p.position);
 }
 
-/// The rotation in a matrix with scale, shear or mirroring: its axes made orthonormal one after the other (Gram,
-/// Schmidt).
+/// The rotation part of a matrix with scale, shear or mirroring: orthonormalizes its axes (Gram-Schmidt).
 Quatd rotation_in_matrix(const Mat3d& m) {
     Mat3d r = m;
     if (determinant(r) < 0) r.x = -r.x;
     r.x = normalized(r.x);
     r.y = normalized(r.y - r.x * dot(r.x, r.y));
     r.z = cross(r.x, r.y);
-    const bool solid = length_squared(r.x) > 0.5 && length_squared(r.y) > 0.5;
-    return solid ? to_quat(r) : Quatd{};
+    const bool regular = length_squared(r.x) > 0.5 && length_squared(r.y) > 0.5;
+    return regular ? to_quat(r) : Quatd{};
 }
 
 }  // namespace
@@ -52,7 +51,8 @@ Placement operator*(const Placement& parent, const Placement& local) {
 Document::Document(const std::vector<std::byte>& bytes, std::string folder)
     : folder_(std::move(folder)), budget_(8ull * bytes.size() + (32ull << 20)) {
     read_container(bytes);
-    if (!root().is(JsonKind::Object)) refuse(root(), fmt::format("found {}, need an object", name_of(root().kind())));
+    if (!root().is(JsonKind::Object))
+        refuse(root(), fmt::format("found {}; expected an object", name_of(root().kind())));
     check_asset();
     buffers_ = table("buffers");
     views_ = table("bufferViews");
@@ -73,102 +73,107 @@ void Document::read_container(const std::vector<std::byte>& bytes) {
     std::size_t text_begin = 0;
     if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
         if (bytes.size() < 20)
-            refuse_file(byte(bytes.size()),
-                        fmt::format("found the end after {} bytes, need a GLB header and chunk", bytes.size()));
-        if (u32_at(bytes, 4) != 2) refuse_file(byte(4), fmt::format("found GLB version {}, need 2", u32_at(bytes, 4)));
+            refuse_file(byte_text(bytes.size()),
+                        fmt::format("found the end after {} bytes; expected a GLB header and chunk", bytes.size()));
+        if (u32_at(bytes, 4) != 2)
+            refuse_file(byte_text(4), fmt::format("found GLB version {}; expected 2", u32_at(bytes, 4)));
         const std::uint64_t length = u32_at(bytes, 8);
         if (length != bytes.size())
-            refuse_file(byte(8), fmt::format("found a length of {}, need {}, the file's size", length, bytes.size()));
-        std::size_t at = 12;
-        for (int chunk = 0; at < bytes.size(); ++chunk) {
-            if (bytes.size() - at < 8)
-                refuse_file(byte(at), fmt::format("found {} bytes, need a chunk header of 8", bytes.size() - at));
-            const std::uint64_t size = u32_at(bytes, at);
-            const std::uint32_t type = u32_at(bytes, at + 4);
-            at += 8;
-            if (size > bytes.size() - at)
-                refuse_file(byte(at - 8),
-                            fmt::format("found a chunk of {} bytes, need at most {}", size, bytes.size() - at));
+            refuse_file(byte_text(8),
+                        fmt::format("found a length of {}; expected {}, the file's size", length, bytes.size()));
+        std::size_t position = 12;
+        for (int chunk = 0; position < bytes.size(); ++chunk) {
+            if (bytes.size() - position < 8)
+                refuse_file(byte_text(position),
+                            fmt::format("found {} bytes; expected a chunk header of 8", bytes.size() - position));
+            const std::uint64_t size = u32_at(bytes, position);
+            const std::uint32_t type = u32_at(bytes, position + 4);
+            position += 8;
+            if (size > bytes.size() - position)
+                refuse_file(byte_text(position - 8), fmt::format("found a chunk of {} bytes; expected at most {}", size,
+                                                                 bytes.size() - position));
             if (size % 4 != 0)
-                refuse_file(byte(at - 8), fmt::format("found a chunk of {} bytes, need a multiple of 4", size));
+                refuse_file(byte_text(position - 8),
+                            fmt::format("found a chunk of {} bytes; expected a multiple of 4", size));
             const bool is_json = type == 0x4e4f534a, is_binary = type == 0x004e4942;
             if (is_json != (chunk == 0))
-                refuse_file(byte(at - 4),
-                            fmt::format("found chunk type {:#010x} as chunk {}, need the JSON chunk first and once",
+                refuse_file(byte_text(position - 4),
+                            fmt::format("found chunk type {:#010x} as chunk {}; expected the JSON chunk first and once",
                                         type, chunk));
             if (is_binary && chunk != 1)
-                refuse_file(byte(at - 4), fmt::format("found a binary chunk as chunk {}, need it as chunk 1", chunk));
-            const std::span<const std::byte> part(bytes.data() + at, static_cast<std::size_t>(size));
+                refuse_file(byte_text(position - 4),
+                            fmt::format("found a binary chunk as chunk {}; expected it as chunk 1", chunk));
+            const std::span<const std::byte> part(bytes.data() + position, static_cast<std::size_t>(size));
             if (is_json) {
                 text = text_of(part);
-                text_begin = at;
+                text_begin = position;
             } else if (is_binary) {
                 glb_buffer_ = part;
                 has_glb_buffer_ = true;
             }
-            at += static_cast<std::size_t>(size);
+            position += static_cast<std::size_t>(size);
         }
     }
     Result<JsonDocument> json = parse_json(text);
     if (!json) {
         Error error = json.error();
         const std::size_t offset = std::strtoull(error.where.c_str() + std::strlen("byte "), nullptr, 10);
-        error.where = byte(text_begin + offset);
+        error.where = byte_text(text_begin + offset);
         throw Refusal{error};
     }
     json_ = *std::move(json);
 }
 
 void Document::check_asset() const {
-    const JsonValue asset = needed(root(), "asset", JsonKind::Object);
-    const JsonValue version = needed(asset, "version", JsonKind::String);
+    const JsonValue asset = required_member(root(), "asset", JsonKind::Object);
+    const JsonValue version = required_member(asset, "version", JsonKind::String);
     if (!version.string().starts_with("2."))
-        refuse(version, fmt::format("found glTF version {}, need 2.x", quoted_short(version.string())));
-    const std::optional<std::string_view> least = text_in(asset, "minVersion");
-    if (least && *least != "2.0")
+        refuse(version, fmt::format("found glTF version {}; expected 2.x", quoted_short(version.string())));
+    const std::optional<std::string_view> min_version = text_in(asset, "minVersion");
+    if (min_version && *min_version != "2.0")
         refuse(*asset.find("minVersion"),
-               fmt::format("found a file for readers of {}, need 2.0", quoted_short(*least)));
+               fmt::format("found a minimum version of {}; expected 2.0", quoted_short(*min_version)));
 }
 
 Table Document::table(std::string_view name) const {
     Table all(json_, root(), name);
     if (const auto array = root().find(name); array && all.empty()) {
-        refuse(*array, "found an empty array, need at least one element or none of it");
+        refuse(*array, "found an empty array; expected at least one element or no array");
     }
     return all;
 }
 
 void Document::check_nodes() {
-    parents_.assign(nodes_.size(), no_parent);
+    parents_.assign(nodes_.size(), no_index);
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
         if (const auto mesh = nodes_[i].find("mesh")) static_cast<void>(index_of(*mesh, meshes_.size(), "meshes"));
         if (nodes_[i].find("name")) static_cast<void>(text_in(nodes_[i], "name"));
         const std::optional<JsonValue> children = member(nodes_[i], "children", JsonKind::Array);
         if (!children) continue;
-        if (children->size() == 0) refuse(*children, "found an empty array, need at least one child or none of it");
+        if (children->size() == 0) refuse(*children, "found an empty array; expected at least one child or no array");
         children->for_each_element([&](JsonValue value) {
             const std::uint32_t child = index_of(value, nodes_.size(), "nodes");
-            if (child == i) refuse(value, fmt::format("found node {} as its own child, need a tree", i));
-            if (parents_[child] != no_parent) {
-                refuse(value, fmt::format("found node {} as child of nodes {} and {}, need one parent", child,
+            if (child == i) refuse(value, fmt::format("found node {} as its own child; expected a tree", i));
+            if (parents_[child] != no_index) {
+                refuse(value, fmt::format("found node {} as child of nodes {} and {}; expected one parent", child,
                                           parents_[child], i));
             }
             parents_[child] = i;
         });
     }
-    // Whoever cannot be reached from a node without a parent is in a circle or below one.
+    // Follows the parents of each node: a node that was reached in the same pass is in a cycle.
     std::vector<std::uint8_t> reached(nodes_.size(), 0);
     std::vector<std::uint32_t> path;
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
         path.clear();
-        std::uint32_t at = i;
-        while (at != no_parent && reached[at] == 0) {
-            reached[at] = 2;
-            path.push_back(at);
-            at = parents_[at];
+        std::uint32_t current = i;
+        while (current != no_index && reached[current] == 0) {
+            reached[current] = 2;
+            path.push_back(current);
+            current = parents_[current];
         }
-        if (at != no_parent && reached[at] == 2)
-            refuse(nodes_[at], fmt::format("found node {} among its own descendants, need a tree", at));
+        if (current != no_index && reached[current] == 2)
+            refuse(nodes_[current], fmt::format("found node {} among its own descendants; expected a tree", current));
         for (const std::uint32_t node : path) reached[node] = 1;
     }
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) static_cast<void>(local(i));
@@ -179,19 +184,20 @@ void Document::check_nodes() {
         std::vector<std::uint32_t> seen;
         roots->for_each_element([&](JsonValue value) {
             const std::uint32_t node = index_of(value, nodes_.size(), "nodes");
-            if (parents_[node] != no_parent)
-                refuse(value, fmt::format("found node {}, which has a parent, need a root", node));
+            if (parents_[node] != no_index)
+                refuse(value, fmt::format("found node {}, which has a parent; expected a root", node));
             seen.push_back(node);
         });
         std::sort(seen.begin(), seen.end());
-        const auto twice = std::adjacent_find(seen.begin(), seen.end());
-        if (twice != seen.end()) refuse(*roots, fmt::format("found node {} twice, need each root once", *twice));
+        const auto duplicate = std::adjacent_find(seen.begin(), seen.end());
+        if (duplicate != seen.end())
+            refuse(*roots, fmt::format("found node {} twice; expected each root once", *duplicate));
     }
     static_cast<void>(scene_roots());
 }
 
 std::optional<std::uint32_t> Document::parent(std::uint32_t node) const {
-    return parents_[node] == no_parent ? std::nullopt : std::optional(parents_[node]);
+    return parents_[node] == no_index ? std::nullopt : std::optional(parents_[node]);
 }
 
 std::string Document::name(std::uint32_t node) const { return std::string(text_in(nodes_[node], "name").value_or("")); }
@@ -203,10 +209,10 @@ Placement Document::local(std::uint32_t node) const {
     if (numbers_in(json, "matrix", m)) {
         for (const char* const key : {"translation", "rotation", "scale"}) {
             if (json.find(key))
-                refuse(json, fmt::format("found both \"matrix\" and \"{}\", need one way to place a node", key));
+                refuse(json, fmt::format("found both \"matrix\" and \"{}\"; expected one of the two", key));
         }
         if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-            refuse(*json.find("matrix"), "found a matrix whose last row is not 0 0 0 1, need an affine one");
+            refuse(*json.find("matrix"), "found a matrix whose last row is not 0 0 0 1; expected an affine one");
         place.linear = {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}};
         place.position = {m[12], m[13], m[14]};
         place.rotation = rotation_in_matrix(place.linear);
@@ -220,7 +226,7 @@ Placement Document::local(std::uint32_t node) const {
         place.linear = place.linear * Mat3d::diagonal(*scale);
         place.untouched = false;
     }
-    if (!is_finite(place)) refuse(json, "found a transform that is not finite, need finite numbers");
+    if (!is_finite(place)) refuse(json, "found a transform that is not finite; expected finite numbers");
     return place;
 }
 
@@ -229,7 +235,7 @@ std::vector<std::uint32_t> Document::scene_roots() const {
     if (scenes_.empty()) {
         if (root().find("scene")) index_in(root(), "scene", 0, "scenes");
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            if (parents_[i] == no_parent) roots.push_back(i);
+            if (parents_[i] == no_index) roots.push_back(i);
         }
         return roots;
     }

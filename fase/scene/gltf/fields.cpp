@@ -1,4 +1,4 @@
-/// Checks each value where it stands in the file.
+/// Checks each value and reports its place in the file.
 #include "fase/scene/gltf/fields.hpp"
 
 #include <fmt/format.h>
@@ -21,21 +21,21 @@ void refuse_file(std::string where, std::string problem, std::string remedy) {
 namespace {
 
 [[noreturn]] void refuse_kind(JsonValue at, std::string_view need) {
-    refuse(at, fmt::format("found {}, need {}", name_of(at.kind()), need));
+    refuse(at, fmt::format("found {}; expected {}", name_of(at.kind()), need));
 }
 
 double checked_number(JsonValue value) {
     if (!value.is(JsonKind::Number)) refuse_kind(value, "a number");
     if (!(std::abs(value.number()) <= 1e30))
-        refuse(value, fmt::format("found {}, need a number within 1e30", value.number()));
+        refuse(value, fmt::format("found {}; expected a number within 1e30", value.number()));
     return value.number();
 }
 
-std::uint64_t checked_whole(JsonValue value, std::uint64_t most) {
+std::uint64_t checked_whole(JsonValue value, std::uint64_t max_value) {
     if (!value.is(JsonKind::Number)) refuse_kind(value, "a whole number");
     const double number = value.number();
-    if (!(number >= 0 && number <= static_cast<double>(most) && number == std::floor(number))) {
-        refuse(value, fmt::format("found {}, need a whole number from 0 to {}", number, most));
+    if (!(number >= 0 && number <= static_cast<double>(max_value) && number == std::floor(number))) {
+        refuse(value, fmt::format("found {}; expected a whole number from 0 to {}", number, max_value));
     }
     return static_cast<std::uint64_t>(number);
 }
@@ -48,9 +48,9 @@ std::optional<JsonValue> member(JsonValue object, std::string_view key, JsonKind
     return value;
 }
 
-JsonValue needed(JsonValue object, std::string_view key, JsonKind kind) {
+JsonValue required_member(JsonValue object, std::string_view key, JsonKind kind) {
     const std::optional<JsonValue> value = member(object, key, kind);
-    if (!value) refuse(object, fmt::format("found no \"{}\", need {}", key, name_of(kind)));
+    if (!value) refuse(object, fmt::format("found no \"{}\"; expected {}", key, name_of(kind)));
     return *value;
 }
 
@@ -65,13 +65,13 @@ std::optional<double> optional_number(JsonValue object, std::string_view key) {
     return checked_number(*value);
 }
 
-double number_in(JsonValue object, std::string_view key, double otherwise) {
-    return optional_number(object, key).value_or(otherwise);
+double number_in(JsonValue object, std::string_view key, double fallback) {
+    return optional_number(object, key).value_or(fallback);
 }
 
-bool flag_in(JsonValue object, std::string_view key, bool otherwise) {
+bool flag_in(JsonValue object, std::string_view key, bool fallback) {
     const std::optional<JsonValue> value = object.find(key);
-    if (!value) return otherwise;
+    if (!value) return fallback;
     if (!value->is(JsonKind::True) && !value->is(JsonKind::False)) refuse_kind(*value, "true or false");
     return value->is(JsonKind::True);
 }
@@ -82,16 +82,16 @@ std::optional<std::string_view> text_in(JsonValue object, std::string_view key) 
     return value->string();
 }
 
-std::optional<std::uint64_t> whole_in(JsonValue object, std::string_view key, std::uint64_t most) {
+std::optional<std::uint64_t> whole_in(JsonValue object, std::string_view key, std::uint64_t max_value) {
     const std::optional<JsonValue> value = object.find(key);
     if (!value) return std::nullopt;
-    return checked_whole(*value, most);
+    return checked_whole(*value, max_value);
 }
 
 std::uint32_t index_of(JsonValue value, std::size_t count, std::string_view what) {
     const std::uint64_t index = checked_whole(value, 1ull << 53);
     if (index >= count)
-        refuse(value, fmt::format("found index {}, need one below {}, the number of {}", index, count, what));
+        refuse(value, fmt::format("found index {}; expected one below {}, the number of {}", index, count, what));
     return static_cast<std::uint32_t>(index);
 }
 
@@ -106,7 +106,7 @@ bool numbers_in(JsonValue object, std::string_view key, std::span<double> out) {
     const std::optional<JsonValue> array = member(object, key, JsonKind::Array);
     if (!array) return false;
     if (array->size() != out.size())
-        refuse(*array, fmt::format("found {} elements, need {}", array->size(), out.size()));
+        refuse(*array, fmt::format("found {} elements; expected {}", array->size(), out.size()));
     std::size_t i = 0;
     array->for_each_element([&](JsonValue value) { out[i++] = checked_number(value); });
     return true;
@@ -125,7 +125,7 @@ std::optional<Quatd> rotation_in(JsonValue object, std::string_view key) {
     const double squared = length_squared(q);
     if (!(std::abs(std::sqrt(squared) - 1) <= 1e-2)) {
         refuse(*object.find(key),
-               fmt::format("found a quaternion of length {:.4g}, need length 1", std::sqrt(squared)));
+               fmt::format("found a quaternion of length {:.4g}; expected length 1", std::sqrt(squared)));
     }
     return std::abs(squared - 1) <= 1e-6 ? q : normalized(q);
 }
@@ -140,15 +140,15 @@ Table::Table(const JsonDocument& document, JsonValue object, std::string_view na
     });
 }
 
-void Notes::unknown_members(JsonValue object, std::string_view name, std::initializer_list<std::string_view> known) {
+void Warnings::unknown_members(JsonValue object, std::string_view name, std::initializer_list<std::string_view> known) {
     object.for_each_member([&](std::string_view key, JsonValue) {
-        const bool always = key == "extras" || key == "extensions" || key == "name";
-        if (always || std::find(known.begin(), known.end(), key) != known.end()) return;
-        add(fmt::format("{} {} is not understood", name, quoted_short(key)));
+        const bool always_allowed = key == "extras" || key == "extensions" || key == "name";
+        if (always_allowed || std::find(known.begin(), known.end(), key) != known.end()) return;
+        add(fmt::format("{} {} is not supported", name, quoted_short(key)));
     });
 }
 
-std::vector<std::string> Notes::texts() const {
+std::vector<std::string> Warnings::texts() const {
     std::vector<std::string> all;
     for (const auto& [text, count] : counts_)
         all.push_back(count == 1 ? text : fmt::format("{} ({} times)", text, count));

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes JSON text piece by piece; used by the glTF writer only.
+/// Writes JSON text piece by piece. Internal to the glTF writer.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@
 
 namespace fase::scene::gltf {
 
-/// Grows a text; commas come by themselves. Numbers are written so short that reading gives the same bits. A number
-/// that is not finite is written as 0 and remembered: see all_finite().
+/// Appends to a JSON text and inserts commas. Numbers have the fewest digits that restore the same bits. A number that
+/// is not finite is written as 0 and clears all_finite().
 class JsonText {
 public:
     JsonText& open(char bracket) {
@@ -60,12 +60,12 @@ public:
         const T values[]{q.x, q.y, q.z, q.w};
         return numbers(std::span<const T>(values));
     }
-    /// A value that was written elsewhere.
+    /// A value from another JsonText.
     JsonText& value(const JsonText& other) {
         all_finite_ = all_finite_ && other.all_finite_;
         return raw(other.text_);
     }
-    /// A value that is JSON already.
+    /// A value in JSON form.
     JsonText& raw_json(std::string_view json) { return raw(json); }
     [[nodiscard]] const std::string& str() const { return text_; }
     [[nodiscard]] bool all_finite() const { return all_finite_; }

@@ -1,11 +1,11 @@
 #pragma once
-/// Mass, centre and inertia of a body that a file describes in part. Used inside the glTF reader only.
+/// Mass, centre and inertia of a body that the file describes in part. Internal to the glTF reader.
 #include "fase/scene/gltf/physics.hpp"
 
 namespace fase::scene::gltf {
 
-/// Gives the body the mass that its motion asks for; its colliders must be there. `node_linear` takes vectors of the
-/// node's frame to the body's. Leaves BodyDef::mass empty when the colliders' densities decide alone.
-void settle_mass(const Scene& scene, Body& body, const Motion& motion, const Mat3d& node_linear, Notes& notes);
+/// Sets the body's mass from its motion and its colliders, which must be complete. `node_linear` maps vectors from the
+/// node's frame to the body's. Leaves BodyDef::mass empty if only the colliders' densities determine it.
+void complete_mass(const Scene& scene, Body& body, const Motion& motion, const Mat3d& node_linear, Warnings& warnings);
 
 }  // namespace fase::scene::gltf

@@ -1,7 +1,8 @@
-/// Lays bodies, colliders and pictures out as nodes.
+/// Writes bodies, colliders and visuals as nodes.
 #include "fase/scene/gltf/node_writer.hpp"
 
 #include <string>
+#include <type_traits>
 
 #include "fase/geometry/mass.hpp"
 
@@ -10,7 +11,17 @@ namespace {
 
 bool is_default(const Material& m) { return m == Material{}; }
 
-/// A body's inertia as KHR wants it.
+/// Whether KHR_implicit_shapes has the shape: gltf_write.cpp writes these. All others are written as hulls.
+bool is_implicit(const Shape& shape) {
+    return std::visit(
+        []<class S>(const S&) {
+            return std::is_same_v<S, Sphere> || std::is_same_v<S, Box> || std::is_same_v<S, Capsule> ||
+                   std::is_same_v<S, Cylinder> || std::is_same_v<S, HalfSpace>;
+        },
+        shape);
+}
+
+/// Writes mass properties in KHR's form.
 void write_mass(JsonText& out, const MassProperties& mass) {
     const PrincipalInertia axes = principal(mass.inertia);
     out.key("mass")
@@ -22,7 +33,7 @@ void write_mass(JsonText& out, const MassProperties& mass) {
     if (!(axes.axes == Quat{})) out.key("inertiaOrientation").rotation(axes.axes);
 }
 
-/// The first collider can stand on the body's node itself when it lies in the body's frame.
+/// Whether the body's node itself can hold the first collider: it must be in the body's frame, without a name.
 bool has_own_collider(const Body& body) {
     return !body.colliders.empty() && body.colliders[0].def.pose == LocalPose{} && body.colliders[0].name.empty();
 }
@@ -40,7 +51,7 @@ void write_collider_extras(JsonText& out, const Collider& collider) {
 
 }  // namespace
 
-/// Begins a node and returns its number; roots are gathered, children not.
+/// Starts a node and returns its number; stores the numbers of roots.
 std::uint32_t NodeWriter::begin_node(std::string_view name, bool root) {
     if (root) roots_.push_back(node_count_);
     nodes_.open('{');
@@ -59,18 +70,18 @@ NodeWriter::NodeWriter(const Scene& scene) : scene_(scene) {
     }
     if (scene_.camera) write_camera(*scene_.camera);
     for (std::uint32_t i = 0; i < scene_.shapes.size(); ++i) {
-        // A hull is the mesh of a node that stands outside the scene.
-        if (const auto at = hull_nodes_.find(i); at != hull_nodes_.end()) {
+        // A hull is the mesh of a node outside the scene.
+        if (const auto hull = hull_nodes_.find(i); hull != hull_nodes_.end()) {
             begin_node("", false);
-            nodes_.key("mesh").number(static_cast<std::uint32_t>(pictures_.list().size()) +
-                                      static_cast<std::uint32_t>(std::distance(hull_nodes_.begin(), at)));
+            nodes_.key("mesh").number(static_cast<std::uint32_t>(coloured_meshes_.list().size()) +
+                                      static_cast<std::uint32_t>(std::distance(hull_nodes_.begin(), hull)));
             nodes_.close('}');
         }
     }
     nodes_.close(']');
 }
 
-/// Shapes whose nodes come after all others: their numbers are known before the nodes are written.
+/// Numbers the nodes of hulls, which follow all other nodes, before the nodes are written.
 void NodeWriter::number_hull_nodes() {
     std::uint32_t count = scene_.camera ? 1 : 0;
     count += static_cast<std::uint32_t>(scene_.scenery.size());
@@ -79,17 +90,17 @@ void NodeWriter::number_hull_nodes() {
                  static_cast<std::uint32_t>(body.colliders.size() - (has_own_collider(body) ? 1 : 0));
     }
     for (std::uint32_t i = 0; i < scene_.shapes.size(); ++i) {
-        if (std::holds_alternative<ConvexHull>(scene_.shapes[i])) hull_nodes_.emplace(i, count++);
+        if (!is_implicit(scene_.shapes[i])) hull_nodes_.emplace(i, count++);
     }
     for (const Body& body : scene_.bodies) {
-        for (const Visual& visual : body.visuals) picture_of(visual);
+        for (const Visual& visual : body.visuals) coloured_mesh_of(visual);
     }
-    for (const Visual& visual : scene_.scenery) picture_of(visual);
+    for (const Visual& visual : scene_.scenery) coloured_mesh_of(visual);
 }
 
-std::uint32_t NodeWriter::picture_of(const Visual& visual) {
+std::uint32_t NodeWriter::coloured_mesh_of(const Visual& visual) {
     const Colour c = visual.colour;
-    return pictures_.of({visual.mesh, colours_.of({c.red, c.green, c.blue, c.alpha})});
+    return coloured_meshes_.of({visual.mesh, colours_.of({c.red, c.green, c.blue, c.alpha})});
 }
 
 void NodeWriter::write_body(const Body& body) {
@@ -98,7 +109,7 @@ void NodeWriter::write_body(const Body& body) {
     const std::uint32_t node = begin_node(body.name, true);
     if (!(def.position == Vec3d{})) nodes_.key("translation").vector(def.position);
     if (!(def.rotation == Quat{})) nodes_.key("rotation").rotation(def.rotation);
-    if (own_visual) nodes_.key("mesh").number(picture_of(body.visuals[0]));
+    if (own_visual) nodes_.key("mesh").number(coloured_mesh_of(body.visuals[0]));
     const auto parts = static_cast<std::uint32_t>(body.colliders.size() + body.visuals.size()) -
                        (own_collider ? 1 : 0) - (own_visual ? 1 : 0);
     if (parts > 0) {
@@ -135,14 +146,14 @@ void NodeWriter::write_motion(const Body& body) {
             std::vector<MassProperties> parts;
             for (const Collider& c : body.colliders) {
                 if (!c.def.sensor)
-                    parts.push_back(moved(mass_properties(scene_.shapes[c.shape], c.def.density), c.def.pose));
+                    parts.push_back(transformed(mass_properties(scene_.shapes[c.shape], c.def.density), c.def.pose));
             }
             const MassProperties all = combined(parts);
             by_density = all.mass > 0;
             if (by_density) nodes_.key("mass").number(all.mass);
         }
     }
-    // In the node's own frame, and in double: turned back it rounds to the same floats.
+    // In the node's frame, and in double: the reader's rotation then rounds to the same floats.
     const Quatd rotation = normalized(to_double(def.rotation));
     const auto velocity = [&](std::string_view key, Vec3 v) {
         if (v == Vec3{}) return;
@@ -212,7 +223,7 @@ void NodeWriter::write_extras(JsonText& extras) {
 }
 
 void NodeWriter::write_visual(const Visual& visual) {
-    nodes_.key("mesh").number(picture_of(visual));
+    nodes_.key("mesh").number(coloured_mesh_of(visual));
     const Mat3& m = visual.linear;
     const Vec3 p = visual.position;
     if (m == Mat3::identity()) {
@@ -228,9 +239,9 @@ void NodeWriter::write_camera(const Camera& camera) {
     const Vec3d z = normalized(to_double(camera.eye) - to_double(camera.target));
     const Vec3d up = std::abs(z.y) > 0.999 ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
     const Vec3d x = normalized(cross(up, z));
-    const bool seen = length_squared(z) > 0.5;
+    const bool has_direction = length_squared(z) > 0.5;
     nodes_.key("translation").vector(camera.eye);
-    if (seen) nodes_.key("rotation").rotation(to_float(to_quat(Mat3d{x, cross(z, x), z})));
+    if (has_direction) nodes_.key("rotation").rotation(to_float(to_quat(Mat3d{x, cross(z, x), z})));
     nodes_.key("camera")
         .number(0)
         .key("extras")

@@ -1,5 +1,5 @@
 #pragma once
-/// The nodes of a written scene, and the numbers of all that they refer to. Used by the glTF writer only.
+/// Writes the nodes of a scene and numbers everything they refer to. Internal to the glTF writer.
 #include <cstdint>
 #include <map>
 #include <tuple>
@@ -11,13 +11,13 @@
 
 namespace fase::scene::gltf {
 
-/// The number of each distinct thing, in the order they first came.
+/// Numbers distinct keys in the order of their first use.
 template <class Key> class Numbering {
 public:
     std::uint32_t of(const Key& key) {
-        const auto [at, fresh] = numbers_.try_emplace(key, static_cast<std::uint32_t>(list_.size()));
-        if (fresh) list_.push_back(key);
-        return at->second;
+        const auto [entry, inserted] = numbers_.try_emplace(key, static_cast<std::uint32_t>(list_.size()));
+        if (inserted) list_.push_back(key);
+        return entry->second;
     }
     [[nodiscard]] const std::vector<Key>& list() const { return list_; }
 
@@ -28,30 +28,30 @@ private:
 
 using ColourKey = std::tuple<float, float, float, float>;
 using MaterialKey = std::tuple<float, float, CombineMode, CombineMode>;
-using FilterKey = std::tuple<std::uint64_t, std::uint64_t>;  ///< category and mask
-using PictureKey = std::pair<std::uint32_t, std::uint32_t>;  ///< mesh and colour
+using FilterKey = std::tuple<std::uint64_t, std::uint64_t>;    ///< category and mask
+using ColouredMesh = std::pair<std::uint32_t, std::uint32_t>;  ///< mesh and colour
 
-/// Writes the nodes of a scene whose indices were checked: a node a body, its further colliders and visuals as
-/// children, then scenery, the camera, and outside the scene a node for the mesh of every hull.
+/// Writes the nodes of a scene with checked indices: one node per body, with its other colliders and visuals as
+/// children; then scenery, the camera, and, outside the scene, one node for the mesh of each hull.
 class NodeWriter {
 public:
     explicit NodeWriter(const Scene& scene);
 
-    /// The array of nodes; meshes 0.. are `pictures`, those after them belong to `hull_nodes` in their order.
+    /// The array of nodes. Meshes 0.. are coloured_meshes(); those after them belong to hull_nodes(), in its order.
     [[nodiscard]] const JsonText& nodes() const { return nodes_; }
     [[nodiscard]] std::uint32_t node_count() const { return node_count_; }
     [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
     [[nodiscard]] const std::vector<ColourKey>& colours() const { return colours_.list(); }
-    [[nodiscard]] const std::vector<PictureKey>& pictures() const { return pictures_.list(); }
+    [[nodiscard]] const std::vector<ColouredMesh>& coloured_meshes() const { return coloured_meshes_.list(); }
     [[nodiscard]] const std::vector<std::uint32_t>& implicit_shapes() const { return implicit_.list(); }
     [[nodiscard]] const std::vector<MaterialKey>& materials() const { return materials_.list(); }
     [[nodiscard]] const std::vector<FilterKey>& filters() const { return filters_.list(); }
-    /// Of each hull among the scene's shapes: the node that has its mesh.
+    /// The node with the mesh of each hull, by shape index.
     [[nodiscard]] const std::map<std::uint32_t, std::uint32_t>& hull_nodes() const { return hull_nodes_; }
 
 private:
     void number_hull_nodes();
-    std::uint32_t picture_of(const Visual& visual);
+    std::uint32_t coloured_mesh_of(const Visual& visual);
     std::uint32_t begin_node(std::string_view name, bool root);
     void write_body(const Body& body);
     void write_motion(const Body& body);
@@ -67,7 +67,7 @@ private:
     std::vector<std::uint32_t> roots_;
     std::uint32_t node_count_ = 0;
     Numbering<ColourKey> colours_;
-    Numbering<PictureKey> pictures_;
+    Numbering<ColouredMesh> coloured_meshes_;
     Numbering<std::uint32_t> implicit_;
     Numbering<MaterialKey> materials_;
     Numbering<FilterKey> filters_;

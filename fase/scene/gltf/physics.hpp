@@ -1,6 +1,6 @@
 #pragma once
-/// The physics of a glTF file's nodes, the same for every dialect: KHR_physics_rigid_bodies, its forerunner
-/// KHR_rigid_bodies, and OMI_physics_body in its two versions. Used inside the glTF reader only.
+/// Reads the physics of glTF nodes in a common form for all dialects: KHR_physics_rigid_bodies, its predecessor
+/// KHR_rigid_bodies, and both versions of OMI_physics_body. Internal to the glTF reader.
 #include <map>
 #include <optional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace fase::scene::gltf {
 
-/// How a node moves. Vectors in the node's own frame.
+/// The motion of a node. Vectors are in the node's frame.
 struct Motion {
     JsonValue json;
     BodyKind kind = BodyKind::Dynamic;
@@ -20,7 +20,7 @@ struct Motion {
     Quatd inertia_axes;
     Vec3d linear, angular;
     double gravity = 1;
-    bool endless_mass = false, endless_inertia = false;
+    bool infinite_mass = false, infinite_inertia = false;
 };
 
 /// One collider or trigger of a node.
@@ -32,21 +32,21 @@ struct ColliderUse {
     bool sensor = false;
 };
 
-/// A joint that begins at a node.
+/// A joint at a node.
 struct JointUse {
     std::string type;
-    std::uint32_t other = 0;  ///< node
+    std::uint32_t other = 0;  ///< the connected node
     bool collide = false;
 };
 
-/// The physics resources of a document, and what each node makes of them. Everything is checked when it is asked for.
+/// The physics resources of a document and their use by nodes. Each value is checked when it is read.
 class Physics {
 public:
-    Physics(Document& document, Notes& notes);
+    Physics(Document& document, Warnings& warnings);
     [[nodiscard]] std::optional<Motion> motion(std::uint32_t node);
     [[nodiscard]] std::vector<ColliderUse> colliders(std::uint32_t node);
     [[nodiscard]] std::optional<JointUse> joint(std::uint32_t node);
-    /// m/s²; nullopt when the file says nothing of it.
+    /// m/s²; nullopt if the file does not define it.
     [[nodiscard]] std::optional<Vec3> gravity();
 
 private:
@@ -65,13 +65,13 @@ private:
                   std::vector<ColliderUse>& out);
 
     Document& document_;
-    Notes& notes_;
-    ShapeList khr_shapes_, khr_old_shapes_, omi_shapes_, omi_colliders_;
+    Warnings& warnings_;
+    ShapeList khr_shapes_, khr_early_shapes_, omi_shapes_, omi_colliders_;
     std::map<std::pair<std::uint32_t, bool>, ShapeSource> node_shapes_;  ///< by node and convexity
-    Resources khr_, khr_old_, omi_;
+    Resources khr_, khr_early_, omi_;
     Table omi_joints_;
     std::map<std::string, std::uint64_t, std::less<>> systems_;
-    std::uint64_t systems_taken_ = 1;
+    std::uint64_t used_bits_ = 1;
 };
 
 }  // namespace fase::scene::gltf

@@ -1,4 +1,4 @@
-/// From JSON to Fase's shapes.
+/// Converts JSON to Fase's shapes.
 #include "fase/scene/gltf/shapes.hpp"
 
 #include <fmt/format.h>
@@ -14,10 +14,10 @@
 namespace fase::scene::gltf {
 namespace {
 
-constexpr float plane_thickness = 0.1f;  ///< of the box that stands for a plane of finite size
-constexpr float endless = 1000;          ///< half size of such a plane along an axis that has no limit
+constexpr float plane_thickness = 0.1f;      ///< of the box that replaces a plane of finite size
+constexpr float unlimited_half_size = 1000;  ///< of such a plane along an axis without a limit
 
-/// What a kind of shape looks like when its sizes are left out.
+/// Sizes of shapes whose parameters are omitted.
 struct Defaults {
     double capsule_radius, capsule_height, cylinder_radius, cylinder_height;
 };
@@ -29,24 +29,24 @@ Defaults defaults_of(ShapeDialect dialect) {
     return dialect == ShapeDialect::OmiCollider ? omi_collider_defaults : khr_defaults;
 }
 
-double size_in(JsonValue json, std::string_view key, double otherwise, bool may_be_zero) {
-    const double size = number_in(json, key, otherwise);
+double size_in(JsonValue json, std::string_view key, double fallback, bool may_be_zero) {
+    const double size = number_in(json, key, fallback);
     if (size < 0 || (size == 0 && !may_be_zero)) {
         refuse(*json.find(key),
-               fmt::format("found {}, need a number {}", size, may_be_zero ? "of 0 or more" : "above 0"));
+               fmt::format("found {}; expected a number {}", size, may_be_zero ? "of 0 or more" : "above 0"));
     }
     return size;
 }
 
-/// The two radii of a capsule or cylinder; "radius" stands for both in older files.
+/// The two radii of a capsule or cylinder; "radius" sets both in older files.
 struct Radii {
     double top, bottom;
     [[nodiscard]] bool equal() const { return top == bottom; }
 };
-Radii radii_in(JsonValue json, double otherwise) {
-    const double both = size_in(json, "radius", otherwise, false);
+Radii radii_in(JsonValue json, double fallback) {
+    const double both = size_in(json, "radius", fallback, false);
     const Radii radii{size_in(json, "radiusTop", both, true), size_in(json, "radiusBottom", both, true)};
-    if (radii.top == 0 && radii.bottom == 0) refuse(json, "found two radii of 0, need at least one above 0");
+    if (radii.top == 0 && radii.bottom == 0) refuse(json, "found two radii of 0; expected at least one above 0");
     return radii;
 }
 
@@ -63,8 +63,9 @@ Shape tapered_cylinder(JsonValue json, Radii radii, double height) {
         const double radius = top ? radii.top : radii.bottom;
         const auto y = static_cast<float>(top ? height / 2 : -height / 2);
         for (int i = 0; i < (radius > 0 ? sides : 1); ++i) {
-            const SinCos at = sin_cos(2 * pi * i / sides);
-            points.push_back({static_cast<float>(radius * at.cos), y, static_cast<float>(radius * at.sin)});
+            const SinCos direction = sin_cos(2 * pi * i / sides);
+            points.push_back(
+                {static_cast<float>(radius * direction.cos), y, static_cast<float>(radius * direction.sin)});
         }
     }
     return checked_hull(json, points);
@@ -86,18 +87,17 @@ Shape tapered_capsule(JsonValue json, Radii radii, double height) {
 
 }  // namespace
 
-ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& document, Notes& notes) {
+ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& document, Warnings& warnings) {
     ShapeSource source;
     source.json = json;
-    const std::string_view type = needed(json, "type", JsonKind::String).string();
+    const std::string_view type = required_member(json, "type", JsonKind::String).string();
     const bool flat = dialect == ShapeDialect::OmiCollider;
-    // A list element without its parameters means the defaults, which an empty object stands for: the "type" member is
-    // skipped below.
-    const std::optional<JsonValue> own = member(json, type == "hull" ? "convex" : type, JsonKind::Object);
-    const JsonValue p = flat || !own ? json : *own;
+    // Without its parameter object, an element has the defaults: its own members contain no sizes.
+    const std::optional<JsonValue> parameters = member(json, type == "hull" ? "convex" : type, JsonKind::Object);
+    const JsonValue p = flat || !parameters ? json : *parameters;
     const Defaults defaults = defaults_of(dialect);
     const auto known = [&](std::initializer_list<std::string_view> keys) {
-        if (own) notes.unknown_members(*own, fmt::format("{} shape's", type), keys);
+        if (parameters) warnings.unknown_members(*parameters, fmt::format("{} shape's", type), keys);
     };
     if (type == "sphere") {
         known({"radius"});
@@ -106,7 +106,7 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
         known({"size"});
         const Vec3d size = vec3_in(p, "size").value_or(Vec3d{1, 1, 1});
         if (!(size.x > 0 && size.y > 0 && size.z > 0))
-            refuse(p, fmt::format("found a box of {} x {} x {}, need sizes above 0", size.x, size.y, size.z));
+            refuse(p, fmt::format("found a box of {} x {} x {}; expected sizes above 0", size.x, size.y, size.z));
         source.shape = Box{to_float(size * 0.5)};
     } else if (type == "capsule") {
         known({"radius", "radiusTop", "radiusBottom", "height"});
@@ -114,7 +114,7 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
         double height = size_in(p, "height", defaults.capsule_height, true);
         if (flat) {
             height -= radii.top + radii.bottom;
-            if (height < 0) refuse(p, "found a capsule lower than twice its radius, need it at least as high");
+            if (height < 0) refuse(p, "found a capsule lower than twice its radius; expected at least that height");
         }
         if (radii.equal())
             source.shape = Capsule{static_cast<float>(radii.top), static_cast<float>(height / 2)};
@@ -131,24 +131,24 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
     } else if (type == "plane") {
         known({"sizeX", "sizeZ", "doubleSided"});
         const bool limited = p.find("sizeX") || p.find("sizeZ");
-        const bool both = flag_in(p, "doubleSided", false);
+        const bool double_sided = flag_in(p, "doubleSided", false);
         if (limited) {
-            const Vec3 half{static_cast<float>(size_in(p, "sizeX", 2 * double(endless), false) / 2),
+            const Vec3 half{static_cast<float>(size_in(p, "sizeX", 2 * double(unlimited_half_size), false) / 2),
                             plane_thickness / 2,
-                            static_cast<float>(size_in(p, "sizeZ", 2 * double(endless), false) / 2)};
+                            static_cast<float>(size_in(p, "sizeZ", 2 * double(unlimited_half_size), false) / 2)};
             source.shape = Box{half};
-            if (!both) source.offset = {0, -plane_thickness / 2, 0};
-            notes.add("planes of finite size are taken as boxes 0.1 m thick");
+            if (!double_sided) source.offset = {0, -plane_thickness / 2, 0};
+            warnings.add("planes of finite size are replaced by boxes 0.1 m thick");
         } else {
             source.shape = HalfSpace{};
-            if (both) notes.add("endless planes are solid below, also those that the file calls double-sided");
+            if (double_sided) warnings.add("infinite planes are solid below, also double-sided ones");
         }
     } else if (type == "convex" || type == "trimesh" || type == "mesh" || type == "hull") {
         source.mesh = index_in(p, "mesh", document.meshes().size(), "meshes");
         source.convex = type == "convex" || type == "hull" || flag_in(p, "convexHull", false);
-        if (!source.mesh) notes.add(fmt::format("{} shapes without a mesh are left out", type));
+        if (!source.mesh) warnings.add(fmt::format("{} shapes without a mesh are skipped", type));
     } else {
-        notes.add(fmt::format("shape type {} is not understood", quoted_short(type)));
+        warnings.add(fmt::format("shape type {} is not supported", quoted_short(type)));
     }
     if (source.shape) {
         if (const Result<void> checked = check(*source.shape); !checked)
@@ -157,24 +157,25 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
     return source;
 }
 
-ShapeList::ShapeList(Document& document, Notes& notes, std::string_view extension_name, std::string_view list,
+ShapeList::ShapeList(Document& document, Warnings& warnings, std::string_view extension_name, std::string_view list,
                      ShapeDialect dialect)
     : dialect_(dialect) {
     const std::optional<JsonValue> body = extension(document.root(), extension_name);
     if (!body) return;
-    notes.unknown_members(*body, extension_name, {list});
+    warnings.unknown_members(*body, extension_name, {list});
     table_ = Table(document.json(), *body, list);
-    for (std::size_t i = 0; i < table_.size(); ++i) static_cast<void>(read_shape(table_[i], dialect, document, notes));
+    for (std::size_t i = 0; i < table_.size(); ++i)
+        static_cast<void>(read_shape(table_[i], dialect, document, warnings));
 }
 
 const ShapeSource& ShapeList::at(Document& document, std::uint32_t index) {
-    const auto [at, fresh] = kept_.try_emplace(index);
-    if (fresh) {
-        Notes noted_already;
-        at->second = read_shape(table_[index], dialect_, document, noted_already);
-        if (at->second.shape) document.spend(at->second.json, *at->second.shape);
+    const auto [entry, inserted] = shapes_.try_emplace(index);
+    if (inserted) {
+        Warnings duplicates;  // the constructor added these warnings
+        entry->second = read_shape(table_[index], dialect_, document, duplicates);
+        if (entry->second.shape) document.spend(entry->second.json, *entry->second.shape);
     }
-    return at->second;
+    return entry->second;
 }
 
 }  // namespace fase::scene::gltf

@@ -1,4 +1,4 @@
-/// Keys that are left out can be interpolated again.
+/// Tests that interpolation restores the omitted samples.
 #include "fase/record/export/motion_keys.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ template <class Value> struct Reduced {
     std::size_t keys = 0;
     double worst = 0;
 };
-/// Reduces 1,000 samples and looks how far the line through the keys misses them.
+/// Reduces 1,000 samples; measures the largest distance of a sample from the interpolated keys.
 template <class Value> Reduced<Value> reduce(const std::function<Value(double)>& motion, double tolerance) {
     MotionKeys<Value> reducer(tolerance);
     std::vector<MotionKey<Value>> samples;
@@ -35,23 +35,23 @@ template <class Value> Reduced<Value> reduce(const std::function<Value(double)>&
             continue;
         }
         const auto before = std::prev(after);
-        const double share = (sample.time - before->time) / (after->time - before->time);
-        result.worst = std::max(result.worst, distance_between(before->value, after->value, share, sample.value));
+        const double fraction = (sample.time - before->time) / (after->time - before->time);
+        result.worst = std::max(result.worst, distance_between(before->value, after->value, fraction, sample.value));
     }
     return result;
 }
 
-TEST(MotionKeys, OfRestAreOne) {
+TEST(MotionKeys, AMotionlessBodyHasOneKey) {
     EXPECT_EQ(reduce<Vec3d>([](double) { return Vec3d{1, 2, 3}; }, 0.001).keys, 1u);
 }
 
-TEST(MotionKeys, OfAStraightLineAreFew) {
+TEST(MotionKeys, AStraightLineHasFewKeys) {
     const auto reduced = reduce<Vec3d>([](double t) { return Vec3d{t, 2 * t, 0}; }, 0.001);
-    EXPECT_LE(reduced.keys, 10u);  // its ends and one each 120 samples
+    EXPECT_LE(reduced.keys, 10u);  // both ends and one per 120 samples
     EXPECT_LE(reduced.worst, 0.001);
 }
 
-TEST(MotionKeys, OfAThrowKeepWithinTheTolerance) {
+TEST(MotionKeys, AThrowStaysWithinTheTolerance) {
     const auto reduced = reduce<Vec3d>(
         [](double t) {
             return Vec3d{3 * t, 20 * t - 4.905 * t * t, std::sin(t)};
@@ -62,14 +62,14 @@ TEST(MotionKeys, OfAThrowKeepWithinTheTolerance) {
     EXPECT_GT(reduced.keys, 100u);
 }
 
-TEST(MotionKeys, KeepTheMomentAtWhichRestEnds) {
+TEST(MotionKeys, KeepTheTimeAtWhichRestEnds) {
     const auto motion = [](double t) { return Vec3d{t < 5 ? 0 : t > 8 ? 30 : (t - 5) * 10, 0, 0}; };
     const auto reduced = reduce<Vec3d>(motion, 0.001);
     EXPECT_LE(reduced.worst, 0.001);
     EXPECT_LE(reduced.keys, 12u);
 }
 
-TEST(MotionKeys, OfTurningKeepWithinTheTolerance) {
+TEST(MotionKeys, RotationStaysWithinTheTolerance) {
     const double degree = 3.14159265358979 / 180;
     const auto steady = reduce<Quatd>([](double t) { return rotation_about(Vec3d{0, 1, 0}, 2 * t); }, 0.1 * degree);
     EXPECT_LE(steady.worst, 0.1 * degree);

@@ -1,4 +1,4 @@
-/// Poses survive their coding within the bounds that the format promises.
+/// Tests that the error of encoded poses is within the limits of the format.
 #include "fase/record/recording/pose_code.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ Quat any_rotation(std::uint64_t i) {
         normalized(Quatd{noise(i, 1, 0) - 0.5, noise(i, 2, 0) - 0.5, noise(i, 3, 0) - 0.5, noise(i, 4, 0) - 0.5}));
 }
 
-TEST(PoseCode, KeepsAnyRotationWithinTwoHundredthsOfADegree) {
+TEST(PoseCode, RotationErrorIsBelowTwoHundredthsOfADegree) {
     double worst = 0;
     for (std::uint64_t i = 0; i < 200000; ++i) {
         const Quat q = any_rotation(i);
@@ -27,17 +27,17 @@ TEST(PoseCode, KeepsAnyRotationWithinTwoHundredthsOfADegree) {
     }
     RecordProperty("worst_degrees", std::to_string(worst));
     EXPECT_LT(worst, 0.02);
-    EXPECT_GT(worst, 0.001);  // the measure itself sees something
+    EXPECT_GT(worst, 0.001);  // the measurement is not trivially 0
 }
 
-TEST(PoseCode, GivesARotationAndItsNegativeTheSameCode) {
+TEST(PoseCode, ARotationAndItsNegativeHaveTheSameCode) {
     for (std::uint64_t i = 0; i < 1000; ++i) {
         const Quat q = any_rotation(i);
         EXPECT_EQ(encode_rotation(q), encode_rotation(Quat{-q.x, -q.y, -q.z, -q.w}));
     }
 }
 
-TEST(PoseCode, KeepsPositionsWithinAMillimetreAMillionMetresOut) {
+TEST(PoseCode, PositionErrorIsBelowAMillimetreFarFromTheOrigin) {
     for (std::uint64_t i = 0; i < 10000; ++i) {
         const double far = i % 2 == 0 ? 1e6 : 1e7;
         const Pose pose{{far + noise(i, 1, 0), -far * noise(i, 2, 0), noise(i, 3, 0)}, {}};
@@ -46,7 +46,7 @@ TEST(PoseCode, KeepsPositionsWithinAMillimetreAMillionMetresOut) {
     }
 }
 
-TEST(PoseCode, DecodesEveryCodeToAUnitQuaternion) {
+TEST(PoseCode, EveryCodeDecodesToAUnitQuaternion) {
     for (const int a : {0, 1, 8192, 16383}) {
         for (const int b : {0, 8192, 16383}) {
             for (std::uint8_t largest = 0; largest < 4; ++largest) {

@@ -1,4 +1,4 @@
-/// What becomes of a recording when the program dies, the disk is full, or two want the same file.
+/// Tests a killed program, a full disk, and two recorders with the same file.
 #include "fase/record/recording/recording_writer.hpp"
 
 #include <fcntl.h>
@@ -21,48 +21,48 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What a child process tells its parent while it records.
-struct Told {
+/// The progress that a child process reports to its parent.
+struct Progress {
     std::atomic<std::uint64_t> frames{0}, flushed{0};
 };
 
-class SharedTold {
+class SharedProgress {
 public:
-    SharedTold()
-        : place_(::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)),
-          told_(new (place_) Told) {}
-    ~SharedTold() { ::munmap(place_, sizeof(Told)); }
-    SharedTold(const SharedTold&) = delete;
-    SharedTold& operator=(const SharedTold&) = delete;
-    Told* operator->() const { return told_; }
+    SharedProgress()
+        : memory_(::mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)),
+          progress_(new (memory_) Progress) {}
+    ~SharedProgress() { ::munmap(memory_, sizeof(Progress)); }
+    SharedProgress(const SharedProgress&) = delete;
+    SharedProgress& operator=(const SharedProgress&) = delete;
+    Progress* operator->() const { return progress_; }
 
 private:
-    void* place_;
-    Told* told_;
+    void* memory_;
+    Progress* progress_;
 };
 
-/// Records without end; to be killed.
-[[noreturn]] void record_for_ever(const std::string& name, const SharedTold& told) {
+/// Records until the process is killed.
+[[noreturn]] void record_forever(const std::string& name, const SharedProgress& progress) {
     const ArtificialRun run(300);
     Result<RecordingWriter> writer = RecordingWriter::create(name, ArtificialRun::head());
     if (!writer || !run.add_tables(*writer)) ::_exit(1);
     for (std::uint64_t k = 0;; ++k) {
         if (!(*writer).add_frame(run.frame(k))) ::_exit(1);
-        told->frames = (*writer).frames();
-        told->flushed = (*writer).frames_flushed();
+        progress->frames = (*writer).frames();
+        progress->flushed = (*writer).frames_flushed();
     }
 }
 
-TEST(KilledRecording, OpensUpToTheLastFlushedFrameTwentyTimes) {
+TEST(KilledRecording, OpensUpToTheLastFlushedFrame) {
     const TemporaryFolder folder;
     const std::string name = folder / "run.faserec";
     const ArtificialRun run(300);
     for (int attempt = 0; attempt < 20; ++attempt) {
-        SharedTold told;
+        SharedProgress progress;
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);
-        if (child == 0) record_for_ever(name, told);
-        while (told->flushed == 0) std::this_thread::sleep_for(1ms);
+        if (child == 0) record_forever(name, progress);
+        while (progress->flushed == 0) std::this_thread::sleep_for(1ms);
         std::this_thread::sleep_for(std::chrono::microseconds(3137 * attempt));
         ::kill(child, SIGKILL);
         int status = 0;
@@ -75,8 +75,8 @@ TEST(KilledRecording, OpensUpToTheLastFlushedFrameTwentyTimes) {
         EXPECT_EQ((*player).path(), name + ".part");
         EXPECT_FALSE((*player).complete());
         EXPECT_NE((*player).lost(), "");
-        EXPECT_GE((*player).frames(), told->flushed);             // none lost that was flushed
-        EXPECT_GE((*player).frames() + 65, told->frames.load());  // and at most one block that was not
+        EXPECT_GE((*player).frames(), progress->flushed);             // no flushed frame is lost
+        EXPECT_GE((*player).frames() + 65, progress->frames.load());  // at most one block is lost
         Frame frame;
         for (std::uint64_t k = 0; k < (*player).frames(); ++k) {
             const Result<void> read = (*player).read(k, frame);
@@ -89,14 +89,14 @@ TEST(KilledRecording, OpensUpToTheLastFlushedFrameTwentyTimes) {
             EXPECT_LT(length(frame.bodies[i].pose.position - last.bodies[i].pose.position), 0.001);
         }
     }
-    // Each later start found the file of the killed one before it, and moved it aside.
+    // Each new recording renamed the file of the previous, killed one.
     EXPECT_TRUE(std::filesystem::exists(name + ".lost"));
     EXPECT_TRUE(std::filesystem::exists(name + ".lost19"));
     EXPECT_FALSE(std::filesystem::exists(name + ".lost20"));
     EXPECT_TRUE(Player::open(name + ".lost19"));
 }
 
-TEST(Recording, IsWrittenOnceASecondHoweverSlowTheSteps) {
+TEST(Recording, IsFlushedInTimeEvenIfStepsAreSlow) {
     const TemporaryFolder folder;
     const ArtificialRun run(5);
     RecorderOptions options;
@@ -109,7 +109,7 @@ TEST(Recording, IsWrittenOnceASecondHoweverSlowTheSteps) {
         ASSERT_TRUE((*writer).add_frame(run.frame(k)));
         std::this_thread::sleep_for(60ms);
     }
-    EXPECT_GE((*writer).frames_flushed() + 1, k);  // slower than the interval: nothing but the first can wait
+    EXPECT_GE((*writer).frames_flushed() + 1, k);  // steps are slower than the interval: only one frame can be pending
     ASSERT_TRUE((*writer).add_frame(run.frame(k++)));
     EXPECT_EQ((*writer).frames_flushed(), k);
 }
@@ -133,7 +133,7 @@ TEST(Recording, IsWrittenEvery64Frames) {
     }
 }
 
-TEST(TwoRecorders, OfOneNameTheSecondIsRefused) {
+TEST(TwoRecorders, TheSecondOneIsRejected) {
     const TemporaryFolder folder;
     const std::string name = folder / "run.faserec";
     Result<RecordingWriter> first = RecordingWriter::create(name, ArtificialRun::head());
@@ -145,13 +145,13 @@ TEST(TwoRecorders, OfOneNameTheSecondIsRefused) {
     EXPECT_TRUE(RecordingWriter::create(name, ArtificialRun::head()));
 }
 
-TEST(TwoRecorders, InTwoProgramsTheSecondIsRefused) {
+TEST(TwoRecorders, TheSecondProcessIsRejected) {
     const TemporaryFolder folder;
     const std::string name = folder / "run.faserec";
-    SharedTold told;
+    SharedProgress progress;
     const pid_t child = ::fork();
-    if (child == 0) record_for_ever(name, told);
-    while (told->flushed == 0) std::this_thread::sleep_for(1ms);
+    if (child == 0) record_forever(name, progress);
+    while (progress->flushed == 0) std::this_thread::sleep_for(1ms);
     const Result<RecordingWriter> second = RecordingWriter::create(name, ArtificialRun::head());
     EXPECT_EQ(second.status(), Status::Busy);
     ::kill(child, SIGKILL);
@@ -176,7 +176,7 @@ TEST(Recording, ReplacesAnOlderOneOnlyWhenItIsFinished) {
     EXPECT_EQ((*player).frames(), 6u);
 }
 
-TEST(Recording, ToAPlaceThatCannotBeIsRefusedBeforeTheRun) {
+TEST(Recording, RejectsAnInvalidPathAtCreation) {
     const TemporaryFolder folder;
     for (const std::string& name : {folder / "no/such/folder/run.faserec", folder.path(), std::string(),
                                     std::string("/proc/nothing.faserec"), folder / std::string(5000, 'x')}) {
@@ -185,7 +185,7 @@ TEST(Recording, ToAPlaceThatCannotBeIsRefusedBeforeTheRun) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(DiskFull, OfADeviceIsToldAtOnce) {
+TEST(DiskFull, IsReportedAtCreation) {
     const Result<RecordingWriter> writer = RecordingWriter::create("/dev/full", ArtificialRun::head());
     ASSERT_FALSE(writer);
     EXPECT_EQ(writer.status(), Status::Io);
@@ -193,7 +193,7 @@ TEST(DiskFull, OfADeviceIsToldAtOnce) {
     EXPECT_NE(writer.error().text().find("wrote 0 frames, 0 bytes"), std::string::npos) << writer.error().text();
 }
 
-/// Lowers the size that this process may give a file, until it is destroyed.
+/// Lowers the file size limit of this process during its lifetime.
 class FileSizeLimit {
 public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -209,7 +209,7 @@ private:
     rlimit before_{};
 };
 
-TEST(DiskFull, KeepsWhatWasWrittenAndSaysHowMuch) {
+TEST(DiskFull, KeepsWrittenFramesAndReportsTheirNumber) {
     const TemporaryFolder folder;
     const std::string name = folder / "run.faserec";
     const ArtificialRun run(100);
@@ -218,7 +218,7 @@ TEST(DiskFull, KeepsWhatWasWrittenAndSaysHowMuch) {
     Error error;
     std::uint64_t flushed = 0, bytes = 0;
     {
-        const FileSizeLimit limit(50000);  // in the midst of a block; raises SIGXFSZ, which is not ignored here
+        const FileSizeLimit limit(50000);  // within a block; raises SIGXFSZ, which is not ignored here
         Result<RecordingWriter> writer = RecordingWriter::create(name, ArtificialRun::head(), options);
         ASSERT_TRUE(writer);
         ASSERT_TRUE(run.add_tables(*writer));
@@ -252,21 +252,21 @@ TEST(DiskFull, LeavesNoEmptyFileBehind) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(Recording, IntoAPipeEndsWithAnErrorWhenNobodyReads) {
+TEST(Recording, ToAPipeWithoutAReaderFails) {
     const TemporaryFolder folder;
     const std::string name = folder / "pipe";
     ASSERT_EQ(::mkfifo(name.c_str(), 0600), 0);
-    EXPECT_EQ(RecordingWriter::create(name, ArtificialRun::head()).status(), Status::Io);  // nobody there
+    EXPECT_EQ(RecordingWriter::create(name, ArtificialRun::head()).status(), Status::Io);  // no reader yet
     const int reader = ::open(name.c_str(), O_RDONLY | O_NONBLOCK);
     ASSERT_GE(reader, 0);
     Result<RecordingWriter> writer = RecordingWriter::create(name, ArtificialRun::head());
     ASSERT_TRUE(writer);
     ::close(reader);
     ASSERT_TRUE((*writer).add_frame(ArtificialRun(0).frame(0)));
-    EXPECT_EQ((*writer).finish().status(), Status::Io);  // and no SIGPIPE
+    EXPECT_EQ((*writer).finish().status(), Status::Io);  // without SIGPIPE
 }
 
-TEST(Recording, MadeDurableIsTheSameFile) {
+TEST(Recording, DurableRecordingHasTheSameBytes) {
     const TemporaryFolder folder;
     RecorderOptions options;
     ASSERT_TRUE(record_run(folder / "a", ArtificialRun(20), 70, options));
@@ -275,7 +275,7 @@ TEST(Recording, MadeDurableIsTheSameFile) {
     EXPECT_EQ(read_file(folder / "a"), read_file(folder / "b"));
 }
 
-TEST(Recording, RefusesOptionsOutOfRange) {
+TEST(Recording, RejectsOptionsOutOfRange) {
     const TemporaryFolder folder;
     for (const RecorderOptions& options :
          {RecorderOptions{.flush_seconds = -1}, RecorderOptions{.flush_seconds = std::nan("")},

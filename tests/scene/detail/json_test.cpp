@@ -23,7 +23,7 @@ TEST(Json, KeepsValuesAndTheirOrder) {
     EXPECT_FALSE(root.find("a")->find("x"));
 }
 
-TEST(Json, TellsWhereAValueStands) {
+TEST(Json, GivesThePointerOfAValue) {
     const auto document = parse_json(R"({"nodes": [{}, {"a/b~": [0, {"x": 1}]}]})");
     ASSERT_TRUE(document);
     std::string pointer;
@@ -35,7 +35,7 @@ TEST(Json, TellsWhereAValueStands) {
     EXPECT_EQ(document->root().pointer(), "");
 }
 
-TEST(Json, RefusesWhatTheStandardDoesNotAllow) {
+TEST(Json, RefusesInvalidJson) {
     using namespace std::string_literals;
     for (const std::string& text :
          {""s, "{"s, "[1,]"s, "{\"a\":1,}"s, "NaN"s, "[1] x"s, "'a'"s, "\"\\ud800\""s, "\xef\xbb\xbf{}"s, "{}\0"s,
@@ -48,13 +48,13 @@ TEST(Json, RefusesWhatTheStandardDoesNotAllow) {
     }
 }
 
-TEST(Json, NamesTheByteAtWhichItStopped) {
+TEST(Json, NamesTheByteOfTheError) {
     const auto document = parse_json("[1, 2, x]");
     ASSERT_FALSE(document);
     EXPECT_EQ(document.error().where, "byte 8");
 }
 
-TEST(Json, HoldsTheDepthCap) {
+TEST(Json, EnforcesTheDepthLimit) {
     const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
     EXPECT_TRUE(parse_json(nested(128)));
     EXPECT_FALSE(parse_json(nested(129)));
@@ -74,7 +74,7 @@ TEST(Json, SurvivesAMillionDigits) {
     EXPECT_TRUE(parse_json("0." + std::string(1000000, '1')));
 }
 
-TEST(Json, QuotesTextSoThatItIsJsonAgain) {
+TEST(Json, QuotedTextIsValidJson) {
     const std::string hard = "a\"\\\n\x1b\x7f\xff\xc3\xa9";
     const std::string text = scene::quoted(hard);
     const auto document = parse_json(text);

@@ -1,4 +1,4 @@
-/// Tests of uris: where they may lead, and what they may hold.
+/// Tests of uris: allowed paths and base64 data.
 #include "fase/scene/detail/uri.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using test::TemporaryFolder;
 using test::write_text;
 
-TEST(Uri, FollowsUrisInsideTheFolder) {
+TEST(Uri, ResolvesUrisInsideTheFolder) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "sub");
     write_text(folder / "a b.bin", "x");
@@ -27,7 +27,7 @@ TEST(Uri, FollowsUrisInsideTheFolder) {
     EXPECT_TRUE(resolve_uri(folder.path(), "./sub/c.bin"));
 }
 
-TEST(Uri, RefusesUrisThatLeadOut) {
+TEST(Uri, RefusesUrisOutsideTheFolder) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "model");
     write_text(folder / "secret", "x");
@@ -72,7 +72,7 @@ TEST(Uri, RefusesBadBase64) {
     }
 }
 
-RC_GTEST_PROP(Uri, Base64GivesBackWhatItTook, (const std::vector<std::uint8_t>& values)) {
+RC_GTEST_PROP(Uri, Base64RoundTrips, (const std::vector<std::uint8_t>& values)) {
     std::vector<std::byte> bytes;
     for (const std::uint8_t value : values) bytes.push_back(std::byte{value});
     const auto back = decode_data_uri("data:;base64," + encode_base64(bytes));
