@@ -1,4 +1,4 @@
-/// The command `fase atlas`: packs images into pages, or rectangles for measuring.
+/// The command `fase atlas`: packs images into pages, or measures the packing of rectangles.
 #include "cli/atlas.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 #include <set>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "cli/sprite_files.hpp"
 #include "fase/atlas/atlas.hpp"
 #include "fase/scene/detail/json.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is told of a packing.
+/// The figures of a packing that are printed.
 struct Figures {
     std::size_t count = 0, different = 0;
     std::vector<atlas::Size> pages;
@@ -65,7 +65,7 @@ Result<atlas::PackOptions> pack_options_of(const AtlasCommand& command) {
     } else if (!command.method.empty() && command.method != "best") {
         return Error{Status::BadArgument,
                      "--method",
-                     fmt::format("found \"{}\", need best, kd_tree or skyline", printable(command.method, 40)),
+                     fmt::format("found \"{}\"; expected best, kd_tree or skyline", printable(command.method, 40)),
                      {}};
     }
     return options;
@@ -97,14 +97,14 @@ Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions
     if (!made) return made.error();
     const Result<std::vector<atlas::NamedBytes>> outputs = atlas::files_of(*made, command.output, options);
     if (!outputs) return outputs.error();
-    std::set<fs::path> read;
-    std::error_code no_matter;
-    for (const SpriteFile& file : *files) read.insert(fs::weakly_canonical(file.path, no_matter));
+    std::set<fs::path> inputs;
+    std::error_code ignored;
+    for (const SpriteFile& file : *files) inputs.insert(fs::weakly_canonical(file.path, ignored));
     for (const atlas::NamedBytes& file : *outputs) {
         if (auto writable = check_output(file.name); !writable) return writable.error();
-        if (read.contains(fs::weakly_canonical(file.name, no_matter)))
-            return Error{Status::Io, file.name, "found a file that is read, need another one to write",
-                         "keep pages out of the folder of the sprites"};
+        if (inputs.contains(fs::weakly_canonical(file.name, ignored)))
+            return Error{Status::Io, file.name, "found an input file; expected another file to write",
+                         "write the pages outside the folder of the sprites"};
     }
     if (auto written = atlas::write_files(*outputs); !written) return written.error();
     Figures figures{sprites->size(), made->different, {}, made->occupancy, made->pack_ms, made->rule};
@@ -112,64 +112,65 @@ Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions
     return figures;
 }
 
-Result<Figures> work(const AtlasCommand& command) {
-    const bool measures = !command.rects.empty();
-    if (measures && (!command.inputs.empty() || !command.output.empty()))
-        return Error{Status::BadArgument, "--rects", "found images or an output beside it, need one or the other", {}};
-    if (!measures && command.inputs.empty())
-        return Error{Status::BadArgument, "FILES", "found none, need PNG files or a folder of them",
-                     "fase atlas --help"};
-    if (!measures && command.output.empty())
-        return Error{Status::BadArgument, "--output", "found none, need the NAME of NAME.png and NAME.json",
-                     "fase atlas --help"};
+Result<Figures> pack(const AtlasCommand& command) {
+    const bool measure_only = !command.rects.empty();
+    if (measure_only && (!command.inputs.empty() || !command.output.empty()))
+        return Error{Status::BadArgument, "--rects", "found FILES or --output with it; expected --rects alone", {}};
+    if (!measure_only && command.inputs.empty())
+        return Error{Status::BadArgument, "FILES", "found none; expected PNG files or a folder of them",
+                     "see 'fase atlas --help'"};
+    if (!measure_only && command.output.empty())
+        return Error{Status::BadArgument, "--output", "found none; expected the NAME of NAME.png and NAME.json",
+                     "see 'fase atlas --help'"};
     const Result<atlas::PackOptions> options = pack_options_of(command);
     if (!options) return options.error();
-    return measures ? pack_rectangles(command, *options) : make_pages(command, *options);
+    return measure_only ? pack_rectangles(command, *options) : make_pages(command, *options);
 }
 
 }  // namespace
 
 int run_atlas(const AtlasCommand& command) {
     try {
-        const Result<Figures> figures = work(command);
+        const Result<Figures> figures = pack(command);
         if (!figures) return refuse(figures.error());
         print(*figures, command.json);
         return exit_ok;
     } catch (const std::bad_alloc&) {
-        return refuse({Status::NoMemory, "atlas", "found too little memory for images and pages", {}});
+        return refuse({Status::NoMemory, "atlas", "found too little memory for the images and pages", {}});
     }
 }
 
-void add_atlas(CLI::App& app, Start& start) {
-    auto& options = start.options<AtlasCommand>();
-    CLI::App& command = *app.add_subcommand("atlas", "Pack images into pages, for PixiJS and Phaser");
-    command.add_option("FILES", options.inputs, "PNG files, or folders of them")->type_name("TEXT");
-    add_text(command, "-o,--output", "NAME: writes NAME.png and NAME.json, or NAME-0.png … for several pages",
-             options.output);
-    add_text(command, "--rects", "Packs the rectangles of a file instead: width and height a line", options.rects);
-    add_whole_number(command, "--max", "The largest side of a page (default 4096; of --rects 65536)", 1,
-                     atlas::max_page_side, options.max_side);
-    add_whole_number(command, "--padding", "Empty pixels between sprites (default 0)", 0, 1024, options.padding);
-    add_whole_number(command, "--extrude", "Pixels around each sprite that repeat its edge (default 0)", 0, 1024,
-                     options.extrude);
-    command.add_flag("--trim", options.trim, "Leave transparent edges out");
-    command.add_flag("--no-rotate", options.no_rotate, "Turn no sprite");
-    command.add_flag("--power-of-two", options.power_of_two, "Pages whose sides are powers of two");
-    command.add_flag("--array", options.array, "Frames as a JSON array instead of an object by name");
-    add_text(command, "--method", "best (default), kd_tree or skyline", options.method);
-    add_positive_number(command, "--budget-ms", "Time of packing (default 50)", 1e7,
-                        [&options](double value) { options.budget_ms = value; });
-    add_whole_number(command, "--tries", "Fillings tried a page, instead of a time: the same pages on any machine", 1,
-                     1000000000, options.tries);
+void add_atlas(Command& program, CommandRegistry& registry) {
+    auto& options = registry.options<AtlasCommand>();
+    Command command = program.add_command("atlas", "Pack images into pages, for PixiJS and Phaser");
+    command.add_texts("FILES", "PNG files, or folders of them", options.inputs);
+    command.add_text("-o,--output", "NAME: write NAME.png and NAME.json, or NAME-0.png … for several pages",
+                     options.output);
+    command.add_text("--rects", "Pack the rectangles of a file instead: width and height per line", options.rects);
+    command.add_whole_number("--max", "The largest side of a page (default 4096; with --rects 65536)", 1,
+                             atlas::max_page_side, options.max_side);
+    command.add_whole_number("--padding", "Empty pixels between sprites (default 0)", 0, 1024, options.padding);
+    command.add_whole_number("--extrude", "Pixels around each sprite that repeat its edge (default 0)", 0, 1024,
+                             options.extrude);
+    command.add_flag("--trim", "Remove transparent edges", options.trim);
+    command.add_flag("--no-rotate", "Do not rotate sprites", options.no_rotate);
+    command.add_flag("--power-of-two", "Pages whose sides are powers of two", options.power_of_two);
+    command.add_flag("--array", "Frames as a JSON array instead of an object by name", options.array);
+    command.add_text("--method", "best (default), kd_tree or skyline", options.method);
+    command.add_positive_number("--budget-ms", "Time for packing (default 50)", 1e7,
+                                [&options](double value) { options.budget_ms = value; });
+    command.add_whole_number("--tries", "Packing attempts per page instead of a time: the same pages on any machine", 1,
+                             1000000000, options.tries);
     add_json(command, options.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase atlas sprites -o game --trim --padding 2\n"
         "  fase atlas hero.png tree.png -o game --power-of-two --tries 100\n"
         "  fase atlas --rects sizes.txt --budget-ms 3 --json\n"
-        "\nA sprite of a folder is called by its way from there, a file by its own name. Sprites that look the same\n"
-        "share a place. Occupancy is the share of the pages' pixels that sprites cover; the time is that of packing.");
-    start.on(command, [&options] { return run_atlas(options); });
+        "\nA sprite from a folder is named by its path in that folder, a single file by its file name. Identical\n"
+        "sprites share one place. Occupancy is the share of the pages' pixels that sprites cover. The time is the\n"
+        "time of packing.");
+    registry.on(command, [&options] { return run_atlas(options); });
 }
 
 }  // namespace fase::cli

@@ -1,17 +1,19 @@
-/// The command `fase distance`: signed distances of pairs of shapes from a file, held against published ones.
+/// The command `fase distance`: compares signed distances of pairs of shapes with published values.
 #include "cli/distance.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/narrow/distance.hpp"
 #include "fase/scene/detail/json.hpp"
@@ -23,10 +25,10 @@ using scene::JsonKind;
 using scene::JsonValue;
 
 constexpr std::size_t max_bytes = std::size_t{1} << 28;
-/// How well a number that was computed with other code, without a stated tolerance, must be met: to float sizes.
+/// Tolerance for reference numbers from other code that state none; sizes are float.
 constexpr double computed_tolerance = 1e-6;
 
-/// A shape and its place in the world; no shape: one that Fase does not have.
+/// A shape and its pose in the world. No shape: Fase has no such type.
 struct Placed {
     std::optional<Shape> shape;
     TransformD pose;
@@ -37,26 +39,26 @@ struct Verdict {
     std::string id;
     std::optional<double> distance, published, error;
     bool within = false;
-    std::string skipped;  ///< why; empty: judged
+    std::string skipped;  ///< the reason; empty: the case was checked
 };
 
 Error bad(const JsonValue& at, std::string problem) {
     return {Status::Format, fmt::format("{}: {}", at.offset(), at.pointer()), std::move(problem), {}};
 }
 
-/// The member `key` as a number; nullopt when there is none.
+/// The member `key` as a number; nullopt if it is missing or null.
 Result<std::optional<double>> number_in(const JsonValue& object, std::string_view key) {
     const std::optional<JsonValue> value = object.find(key);
     if (!value || value->is(JsonKind::Null)) return std::optional<double>{};
     if (!value->is(JsonKind::Number))
-        return bad(*value, fmt::format("found {}, need a number", name_of(value->kind())));
+        return bad(*value, fmt::format("found {}; expected a number", name_of(value->kind())));
     return std::optional<double>{value->number()};
 }
 
 /// The member `key` as an array of `count` numbers.
 Result<std::array<double, 9>> numbers_in(const JsonValue& object, std::string_view key, std::size_t count) {
     const std::optional<JsonValue> value = object.find(key);
-    if (!value) return bad(object, fmt::format("found no \"{}\", need {} numbers", key, count));
+    if (!value) return bad(object, fmt::format("found no \"{}\"; expected {} numbers", key, count));
     std::array<double, 9> numbers{};
     std::size_t found = 0;
     bool all_numbers = value->is(JsonKind::Array);
@@ -72,18 +74,22 @@ Result<std::array<double, 9>> numbers_in(const JsonValue& object, std::string_vi
     return numbers;
 }
 
-std::size_t size_count(std::string_view type) {
-    if (type == "box") return 3;
-    if (type == "sphere") return 1;
-    return type == "capsule" || type == "cylinder" ? 2 : 0;
+/// Calls use.operator()<S>() for the shape of that name, if it has sizes; the file can describe no other shape.
+template <class F> void with_sized_shape(std::string_view name, const F& use) {
+    for_each_shape([&]<class S>() {
+        if constexpr (SizedShape<S>) {
+            if (S::name == name && !S::sizes.empty()) use.template operator()<S>();
+        }
+    });
 }
 
 Result<Placed> read_shape(const JsonValue& object) {
     const std::optional<JsonValue> type = object.find("type");
-    if (!type || !type->is(JsonKind::String)) return bad(object, "found no shape, need an object with a \"type\"");
+    if (!type || !type->is(JsonKind::String)) return bad(object, "found no shape; expected an object with a \"type\"");
     Placed placed;
     placed.type = type->string();
-    const std::size_t count = size_count(placed.type);
+    std::size_t count = 0;
+    with_sized_shape(placed.type, [&]<class S>() { count = S::sizes.size(); });
     if (count == 0) return placed;
 
     const auto size = numbers_in(object, "size", count);
@@ -92,11 +98,11 @@ Result<Placed> read_shape(const JsonValue& object) {
     if (!position) return position.error();
     const auto rows = numbers_in(object, "rot", 9);
     if (!rows) return rows.error();
-    std::array<float, 3> s{};
+    std::array<float, 9> s{};
     for (std::size_t i = 0; i < count; ++i) {
         s[i] = static_cast<float>((*size)[i]);
         if (!(s[i] > 0 && std::isfinite(s[i]))) {
-            return bad(*object.find("size"), fmt::format("found {}, need a size above 0", (*size)[i]));
+            return bad(*object.find("size"), fmt::format("found {}; expected a size above 0", (*size)[i]));
         }
     }
     const auto& r = *rows;
@@ -108,43 +114,39 @@ Result<Placed> read_shape(const JsonValue& object) {
     const double worst = std::sqrt(length_squared(off.x) + length_squared(off.y) + length_squared(off.z));
     if (!(worst < orthonormal && determinant(m) > 0)) return bad(*object.find("rot"), "found no rotation matrix");
 
-    if (placed.type == "box") {
-        placed.shape = Box{{s[0], s[1], s[2]}};
-    } else if (placed.type == "sphere") {
-        placed.shape = Sphere{s[0]};
-    } else {
-        if (placed.type == "capsule") {
-            placed.shape = Capsule{s[0], s[1]};
-        } else {
-            placed.shape = Cylinder{s[0], s[1]};
-        }
-        // There the axis is z, here it is y.
-        m = m * Mat3d{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    }
+    with_sized_shape(placed.type, [&]<class S>() {
+        SizeNumbers<S> sizes;
+        std::copy_n(s.begin(), sizes.size(), sizes.begin());
+        placed.shape = shape_with<S>(sizes);
+        // Round shapes have their axis along z in the file, along y here.
+        constexpr bool has_axis = !std::is_same_v<S, Box> && !std::is_same_v<S, Sphere>;
+        if (has_axis) m = m * Mat3d{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+    });
     return placed;
 }
 
-Result<Verdict> judge(const JsonValue& one) {
-    if (!one.is(JsonKind::Object)) return bad(one, fmt::format("found {}, need an object", name_of(one.kind())));
+Result<Verdict> check_case(const JsonValue& object) {
+    if (!object.is(JsonKind::Object))
+        return bad(object, fmt::format("found {}; expected an object", name_of(object.kind())));
     Verdict verdict;
-    const std::optional<JsonValue> id = one.find("id");
-    if (!id || !id->is(JsonKind::String)) return bad(one, "found no \"id\", need a text");
+    const std::optional<JsonValue> id = object.find("id");
+    if (!id || !id->is(JsonKind::String)) return bad(object, "found no \"id\"; expected a text");
     verdict.id = id->string();
     std::array<Placed, 2> placed;
     for (std::size_t i = 0; i < 2; ++i) {
         const char* key = i == 0 ? "a" : "b";
-        const std::optional<JsonValue> shape = one.find(key);
-        if (!shape) return bad(one, fmt::format("found no \"{}\", need a shape", key));
+        const std::optional<JsonValue> shape = object.find(key);
+        if (!shape) return bad(object, fmt::format("found no \"{}\"; expected a shape", key));
         Result<Placed> read = read_shape(*shape);
         if (!read) return read.error();
         placed[i] = *std::move(read);
     }
-    const auto published = number_in(one, "distance"), tolerance = number_in(one, "tol");
-    const auto sign = number_in(one, "sign"), computed = number_in(one, "distance_computed_by_us");
+    const auto published = number_in(object, "distance"), tolerance = number_in(object, "tol");
+    const auto sign = number_in(object, "sign"), computed = number_in(object, "distance_computed_by_us");
     for (const auto* number : {&published, &tolerance, &sign, &computed}) {
         if (!*number) return number->error();
     }
-    if (*published && !*tolerance) return bad(one, "found a \"distance\" without \"tol\", need both");
+    if (*published && !*tolerance) return bad(object, "found a \"distance\" without \"tol\"; expected both");
 
     for (const Placed& p : placed) {
         if (!p.shape) verdict.skipped = fmt::format("Fase has no shape {}", scene::quoted_short(p.type));
@@ -159,37 +161,37 @@ Result<Verdict> judge(const JsonValue& one) {
     }
     verdict.within = true;
     if (*sign) verdict.within = **sign > 0 ? distance > 0 : **sign < 0 ? distance < 0 : distance == 0;
-    const auto hold_against = [&](double number, double allowed) {
+    const auto compare_with = [&](double number, double allowed) {
         verdict.published = number;
         verdict.error = std::abs(distance - number);
         if (!(*verdict.error <= allowed)) verdict.within = false;
     };
-    if (*computed) hold_against(**computed, computed_tolerance);
-    if (*published) hold_against(**published, **tolerance);
+    if (*computed) compare_with(**computed, computed_tolerance);
+    if (*published) compare_with(**published, **tolerance);
     return verdict;
 }
 
-Result<std::vector<Verdict>> judge_file(const std::string& file) {
+Result<std::vector<Verdict>> check_file(const std::string& file) {
     const auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     if (!document) return document.error();
     const std::optional<JsonValue> cases = document->root().find("cases");
     if (!cases || !cases->is(JsonKind::Array)) {
-        return Error{Status::Format, "0", "found no \"cases\", need an object with an array of that name", {}};
+        return Error{Status::Format, "0", "found no \"cases\"; expected an object with an array of that name", {}};
     }
     std::vector<Verdict> verdicts;
-    std::optional<Error> wrong;
+    std::optional<Error> first_error;
     cases->for_each_element([&](const JsonValue& one) {
-        if (wrong) return;
-        Result<Verdict> verdict = judge(one);
+        if (first_error) return;
+        Result<Verdict> verdict = check_case(one);
         if (verdict) {
             verdicts.push_back(*std::move(verdict));
         } else {
-            wrong = verdict.error();
+            first_error = verdict.error();
         }
     });
-    if (wrong) return *wrong;
+    if (first_error) return *first_error;
     return verdicts;
 }
 
@@ -239,7 +241,7 @@ void print_lines(const std::vector<Verdict>& verdicts, const Summary& sum) {
 }  // namespace
 
 int run_distance(const DistanceOptions& options) {
-    const Result<std::vector<Verdict>> verdicts = judge_file(options.file);
+    const Result<std::vector<Verdict>> verdicts = check_file(options.file);
     if (!verdicts) {
         Error error = verdicts.error();
         const bool names_file = error.where.starts_with(options.file);
@@ -261,13 +263,13 @@ int run_distance(const DistanceOptions& options) {
     return sum.within + sum.skipped == sum.total ? exit_ok : exit_check_failed;
 }
 
-void add_distance(CLI::App& app, Start& start) {
-    auto& distance = start.options<DistanceOptions>();
-    CLI::App& command = *app.add_subcommand("distance", "Hold distances of pairs of shapes against published ones");
-    add_text(command, "PAIRS.json", "Pairs with the distances they should have", distance.file)->required();
+void add_distance(Command& program, CommandRegistry& registry) {
+    auto& distance = registry.options<DistanceOptions>();
+    Command command = program.add_command("distance", "Compare distances of pairs of shapes with published values");
+    command.add_text("PAIRS.json", "Pairs with their expected distances", distance.file).required();
     add_json(command, distance.json);
-    command.footer("\nExample:\n  fase distance pairs.json\n\nExit code 1: a distance is wrong.");
-    start.on(command, [&distance] { return run_distance(distance); });
+    command.set_footer("\nExample:\n  fase distance pairs.json\n\nExit code 1: a distance is wrong.");
+    registry.on(command, [&distance] { return run_distance(distance); });
 }
 
 }  // namespace fase::cli

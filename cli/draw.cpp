@@ -1,4 +1,4 @@
-/// The command `fase draw`: pictures of the cells in which structures keep the boxes of a trace.
+/// The command `fase draw`: draws the cells in which structures keep the boxes of a trace.
 #include "cli/draw.hpp"
 
 #include <fmt/format.h>
@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
+#include "cli/common/structure_choice.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/box_picture.hpp"
 #include "fase/record/recording/output_file.hpp"
@@ -23,38 +24,38 @@ using broad::AnyStructure;
 using broad::Move;
 using broad::Proxy;
 using record::BoxKind;
-using record::Seen;
+using record::View;
 
-/// A picture to be made.
+/// A picture to draw.
 struct Job {
     std::string structure, file;
 };
 
-/// A structure that lives through the frames of a trace.
-struct Life {
+/// A structure that is updated through the frames of a trace.
+struct Replay {
     AnyStructure structure;
     std::vector<Aabb> boxes;
-    std::vector<std::uint8_t> moved;  ///< by body: since the first frame
+    std::vector<std::uint8_t> moved;  ///< by box: 1 if it moved since the first frame
 };
 
-Result<Seen> plane_named(const std::string& name) {
-    if (name.empty() || name == "xz") return Seen::FromAbove;
-    if (name == "xy") return Seen::FromFront;
-    if (name == "yz") return Seen::FromSide;
+Result<View> plane_named(const std::string& name) {
+    if (name.empty() || name == "xz") return View::FromAbove;
+    if (name == "xy") return View::FromFront;
+    if (name == "yz") return View::FromSide;
     return Error{
-        Status::BadArgument, "--plane", fmt::format("found \"{}\", need xz, xy or yz", printable(name, 40)), {}};
+        Status::BadArgument, "--plane", fmt::format("found \"{}\"; expected xz, xy or yz", printable(name, 40)), {}};
 }
 
 Result<std::vector<Job>> jobs_of(const DrawOptions& options) {
-    std::error_code no_matter;
-    const bool into_folder = std::filesystem::is_directory(options.output, no_matter);
+    std::error_code ignored;
+    const bool into_folder = std::filesystem::is_directory(options.output, ignored);
     const bool all = options.structure == "all";
     std::vector<std::string> names;
     if (all) {
         broad::for_each_structure([&]<broad::Structure S>() { names.emplace_back(S::info.name); });
     } else {
-        const bool by_default = options.structure.empty() || options.structure == "auto";
-        const std::string name = by_default ? std::string(broad::default_structure) : options.structure;
+        const bool use_default = options.structure.empty() || options.structure == "auto";
+        const std::string name = use_default ? std::string(broad::default_structure) : options.structure;
         if (const auto known = AnyStructure::named(name); !known) {
             Error error = known.error();
             error.where = "--structure";
@@ -64,68 +65,69 @@ Result<std::vector<Job>> jobs_of(const DrawOptions& options) {
     }
     if (all && !into_folder)
         return Error{
-            Status::BadArgument, options.output, "found no folder, need one that exists for all structures", {}};
+            Status::BadArgument, options.output, "found no folder; expected an existing one for all structures", {}};
     std::vector<Job> jobs;
     for (const std::string& name : names) {
         const std::string file =
             into_folder ? (std::filesystem::path(options.output) / (name + ".svg")).string() : options.output;
         if (!file.ends_with(".svg"))
-            return Error{Status::BadArgument, file, "found another ending, need .svg or a folder", {}};
+            return Error{Status::BadArgument, file, "found another extension; expected .svg or a folder", {}};
         if (auto writable = check_output(file, options.trace); !writable) return writable.error();
         jobs.push_back({name, file});
     }
     return jobs;
 }
 
-/// Goes through the frames of the trace from the first to the wanted one.
-Result<void> live(Life& life, record::TraceReader& trace, std::uint32_t last_frame) {
+/// Updates the structure from the first frame of the trace to `last_frame`.
+Result<void> play(Replay& replay, record::TraceReader& trace, std::uint32_t last_frame) {
     trace.rewind();
-    if (auto read = trace.next(life.boxes); !read) return read.error();
+    if (auto read = trace.next(replay.boxes); !read) return read.error();
     std::vector<Move> moves;
     std::vector<Proxy> resting;
-    for (Proxy p = 0; p < life.boxes.size(); ++p) {
-        moves.push_back({p, life.boxes[p]});
+    for (Proxy p = 0; p < replay.boxes.size(); ++p) {
+        moves.push_back({p, replay.boxes[p]});
         if (trace.flags()[p] != 0) resting.push_back(p);
     }
-    life.moved.assign(life.boxes.size(), 0);
-    life.structure.build(moves);
-    life.structure.set_awake(resting, false);
-    life.structure.commit();
+    replay.moved.assign(replay.boxes.size(), 0);
+    replay.structure.build(moves);
+    replay.structure.set_awake(resting, false);
+    replay.structure.commit();
     std::vector<Aabb> boxes;
-    std::vector<Proxy>& roused = resting;
+    std::vector<Proxy>& woken = resting;  // reuses the memory
     for (std::uint32_t frame = 1; frame <= last_frame; ++frame) {
         if (auto read = trace.next(boxes); !read) return read.error();
         moves.clear();
-        roused.clear();
+        woken.clear();
         for (Proxy p = 0; p < boxes.size(); ++p) {
-            if (boxes[p] == life.boxes[p]) continue;
+            if (boxes[p] == replay.boxes[p]) continue;
             moves.push_back({p, boxes[p]});
-            if (life.moved[p] == 0) roused.push_back(p);
-            life.moved[p] = 1;
+            if (replay.moved[p] == 0) woken.push_back(p);
+            replay.moved[p] = 1;
         }
-        life.structure.set_awake(roused, true);
-        life.structure.move(moves);
-        life.structure.commit();
-        life.boxes.swap(boxes);
+        replay.structure.set_awake(woken, true);
+        replay.structure.move(moves);
+        replay.structure.commit();
+        replay.boxes.swap(boxes);
     }
     return {};
 }
 
-std::string picture_of(const Life& life, std::span<const std::uint8_t> flags, Seen seen, const std::string& view) {
+std::string picture_of(const Replay& replay, std::span<const std::uint8_t> flags, View view,
+                       const std::string& subtitle) {
     std::vector<record::PicturedBox> boxes;
-    for (std::size_t i = 0; i < life.boxes.size(); ++i) {
-        const bool rests = (flags[i] & record::trace_asleep) != 0 && life.moved[i] == 0;
-        boxes.push_back({life.boxes[i], (flags[i] & record::trace_static) != 0 ? BoxKind::Static
-                                        : rests                                ? BoxKind::Resting
-                                                                               : BoxKind::Awake});
+    for (std::size_t i = 0; i < replay.boxes.size(); ++i) {
+        const bool rests = (flags[i] & record::trace_asleep) != 0 && replay.moved[i] == 0;
+        boxes.push_back({replay.boxes[i], (flags[i] & record::trace_static) != 0 ? BoxKind::Static
+                                          : rests                                ? BoxKind::Resting
+                                                                                 : BoxKind::Awake});
     }
     std::vector<broad::DrawnCell> cells;
-    life.structure.cells(cells);
-    const broad::StructureStats stats = life.structure.stats();
-    const std::string note = fmt::format("{} boxes, {} node{}, {} lea{}, depth {}, {:.1f} boxes a leaf; {}",
+    replay.structure.cells(cells);
+    const broad::StructureStats stats = replay.structure.stats();
+    const std::string note = fmt::format("{} boxes, {} node{}, {} lea{}, depth {}, {:.1f} boxes per leaf; {}",
                                          stats.boxes, stats.nodes, stats.nodes == 1 ? "" : "s", stats.leaves,
-                                         stats.leaves == 1 ? "f" : "ves", stats.depth, stats.occupancy(), view);
-    return record::svg_of({std::string(life.structure.info().name), note, seen, boxes, cells});
+                                         stats.leaves == 1 ? "f" : "ves", stats.depth, stats.occupancy(), subtitle);
+    return record::svg_of({std::string(replay.structure.info().name), note, view, boxes, cells});
 }
 
 Result<void> write_text(const std::string& file, const std::string& text) {
@@ -136,22 +138,22 @@ Result<void> write_text(const std::string& file, const std::string& text) {
 }
 
 Result<void> draw(const DrawOptions& options) {
-    const Result<Seen> seen = plane_named(options.plane);
-    if (!seen) return seen.error();
+    const Result<View> view = plane_named(options.plane);
+    if (!view) return view.error();
     const Result<std::vector<Job>> jobs = jobs_of(options);
     if (!jobs) return jobs.error();
     auto trace = record::TraceReader::open(options.trace);
     if (!trace) return trace.error();
     if (options.frame >= trace->frames())
         return Error{Status::BadArgument, "--frame",
-                     fmt::format("found {}, need 0 to {}", options.frame, trace->frames() - 1),
+                     fmt::format("found {}; expected 0 to {}", options.frame, trace->frames() - 1),
                      fmt::format("{} has {} frames", printable(options.trace), trace->frames())};
-    const std::string view =
+    const std::string subtitle =
         fmt::format("plane {}, frame {}", options.plane.empty() ? "xz" : options.plane, options.frame);
     for (const Job& job : *jobs) {
-        Life life{*AnyStructure::named(job.structure), {}, {}};
-        if (auto lived = live(life, *trace, options.frame); !lived) return lived;
-        const std::string svg = picture_of(life, trace->flags(), *seen, view);
+        Replay replay{*AnyStructure::named(job.structure), {}, {}};
+        if (auto played = play(replay, *trace, options.frame); !played) return played;
+        const std::string svg = picture_of(replay, trace->flags(), *view, subtitle);
         if (auto written = write_text(job.file, svg); !written) return written;
         fmt::print("{}: {}, {} bytes\n", printable(job.file), job.structure, svg.size());
     }
@@ -165,27 +167,28 @@ int run_draw(const DrawOptions& options) {
         const Result<void> drawn = draw(options);
         return drawn ? exit_ok : refuse(drawn.error());
     } catch (const std::bad_alloc&) {
-        return refuse({Status::NoMemory, options.trace, "found too little memory for its boxes", {}});
+        return refuse({Status::NoMemory, options.trace, "found too little memory for the boxes", {}});
     }
 }
 
-void add_draw(CLI::App& app, Start& start) {
-    auto& options = start.options<DrawOptions>();
-    CLI::App& command = *app.add_subcommand("draw", "Draw the cells in which a structure keeps the boxes of a trace");
-    add_text(command, "TRACE", "An .aabt file", options.trace)->required();
+void add_draw(Command& program, CommandRegistry& registry) {
+    auto& options = registry.options<DrawOptions>();
+    Command command = program.add_command("draw", "Draw the cells in which a structure keeps the boxes of a trace");
+    command.add_text("TRACE", "An .aabt file", options.trace).required();
     add_structure(command, "auto (default), all (into a folder), ", options.structure);
-    add_text(command, "--plane", "xz (default: seen from above), xy or yz", options.plane);
-    add_whole_number(command, "--frame", "Which frame, from 0 (default); the structure lives through those before", 0,
-                     0xffffffff, options.frame);
-    add_text(command, "-o,--output", "The .svg file to write, or a folder for NAME.svg", options.output)->required();
-    command.footer(
+    command.add_text("--plane", "xz (default: seen from above), xy or yz", options.plane);
+    command.add_whole_number("--frame",
+                             "Which frame, from 0 (default); the structure is updated through all frames before it", 0,
+                             0xffffffff, options.frame);
+    command.add_text("-o,--output", "The .svg file to write, or a folder for NAME.svg", options.output).required();
+    command.set_footer(
         "\nExamples:\n"
         "  fase draw boxes.aabt --structure kd_tree -o kd_tree.svg\n"
         "  fase draw boxes.aabt --structure all --plane xy --frame 30 -o pictures\n"
-        "\nBoxes: awake, resting or static, by their colour. Lines: cells, the deeper the paler.\n"
-        "Structures that have no cells show their boxes. Some 80 bytes a box: pictures of up to a few thousand are "
-        "clear.");
-    start.on(command, [&options] { return run_draw(options); });
+        "\nThe colour of a box shows whether it is awake, resting or static. Lines are cells; deeper cells are paler.\n"
+        "A structure without cells shows only its boxes. A box takes about 80 bytes; pictures of up to a few\n"
+        "thousand boxes are readable.");
+    registry.on(command, [&options] { return run_draw(options); });
 }
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// The command `fase info`: says what a file is and what is in it.
+/// The command `fase info`: prints the kind and the contents of a file.
 #include "cli/info.hpp"
 
 #include <fmt/format.h>
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/facts.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/player.hpp"
@@ -21,6 +21,15 @@
 namespace fase::cli {
 namespace {
 
+const char* kind_name(BodyKind kind) {
+    switch (kind) {
+        case BodyKind::Static: return "static";
+        case BodyKind::Kinematic: return "kinematic";
+        case BodyKind::Dynamic: return "dynamic";
+    }
+    return "unknown";
+}
+
 Result<Facts> scene_facts(const InfoOptions& options) {
     const Result<scene::Scene> read = scene::read_gltf(options.file);
     if (!read) return read.error();
@@ -28,9 +37,7 @@ Result<Facts> scene_facts(const InfoOptions& options) {
     std::map<std::string, std::size_t> kinds{{"static", 0}, {"kinematic", 0}, {"dynamic", 0}}, shapes;
     std::size_t colliders = 0, sensors = 0, visuals = s.scenery.size(), triangles = 0;
     for (const scene::Body& body : s.bodies) {
-        ++kinds[body.def.kind == BodyKind::Static      ? "static"
-                : body.def.kind == BodyKind::Kinematic ? "kinematic"
-                                                       : "dynamic"];
+        ++kinds[kind_name(body.def.kind)];
         visuals += body.visuals.size();
         for (const scene::Collider& collider : body.colliders) {
             ++(collider.def.sensor ? sensors : colliders);
@@ -87,15 +94,15 @@ Result<Facts> recording_facts(const InfoOptions& options) {
 
 std::string text_of(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-/// Reads the whole trace, and so judges it.
+/// Reads, and so validates, the whole trace.
 Result<Facts> trace_facts(const InfoOptions& options) {
     Result<record::TraceReader> trace = record::TraceReader::open(options.file);
     if (!trace) return trace.error();
     std::vector<Aabb> before, boxes;
-    Aabb room;
+    Aabb bounds;
     std::size_t infinite = 0, moves = 0, woken = 0, static_boxes = 0, asleep = 0;
     double size_sum = 0;
-    float least = Aabb::infinity, largest = 0;
+    float smallest = Aabb::infinity, largest = 0;
     std::vector<std::uint8_t> has_moved(trace->boxes(), 0);
     for (std::uint32_t frame = 0; frame < trace->frames(); ++frame) {
         if (const Result<bool> read = trace->next(boxes); !read) return read.error();
@@ -103,11 +110,11 @@ Result<Facts> trace_facts(const InfoOptions& options) {
             const Vec3 sides = extent(boxes[i]);
             const float size = std::max({sides.x, sides.y, sides.z});
             const bool is_infinite = !(size < Aabb::infinity);
-            if (!is_infinite) room = merge(room, boxes[i]);
+            if (!is_infinite) bounds = merge(bounds, boxes[i]);
             if (frame == 0) {
                 infinite += is_infinite ? 1 : 0;
                 size_sum += is_infinite ? 0.0 : double(size);
-                least = std::min(least, size);
+                smallest = std::min(smallest, size);
                 largest = std::max(largest, size);
             } else if (!(boxes[i] == before[i])) {
                 has_moved[i] = 1;
@@ -117,9 +124,9 @@ Result<Facts> trace_facts(const InfoOptions& options) {
         before.swap(boxes);
     }
     for (std::size_t i = 0; i < trace->boxes(); ++i) {
-        const bool stands = (trace->flags()[i] & record::trace_static) != 0;
-        static_boxes += stands ? 1 : 0;
-        if (stands || (trace->flags()[i] & record::trace_asleep) == 0) continue;
+        const bool is_static = (trace->flags()[i] & record::trace_static) != 0;
+        static_boxes += is_static ? 1 : 0;
+        if (is_static || (trace->flags()[i] & record::trace_asleep) == 0) continue;
         ++asleep;
         woken += has_moved[i];
     }
@@ -137,13 +144,13 @@ Result<Facts> trace_facts(const InfoOptions& options) {
               trace->frames() < 2 ? 0.0 : static_cast<double>(moves) / static_cast<double>(trace->frames() - 1));
     facts.add("infinite", infinite);
     if (infinite < trace->boxes()) {
-        facts.add("least_size", least);
+        facts.add("least_size", smallest);
         facts.add("mean_size", size_sum / static_cast<double>(trace->boxes() - infinite));
     }
     if (infinite == 0) facts.add("largest_size", largest);
-    if (!is_empty(room)) {
-        facts.add("room_least", std::string_view(text_of(room.lo)));
-        facts.add("room_largest", std::string_view(text_of(room.hi)));
+    if (!is_empty(bounds)) {
+        facts.add("room_least", std::string_view(text_of(bounds.lo)));
+        facts.add("room_largest", std::string_view(text_of(bounds.hi)));
     }
     facts.add("bytes", trace->bytes());
     facts.add("warnings", std::vector<std::string>{});
@@ -172,13 +179,13 @@ int run_info(const InfoOptions& options) {
     return exit_ok;
 }
 
-void add_info(CLI::App& app, Start& start) {
-    auto& info = start.options<InfoOptions>();
-    CLI::App& command = *app.add_subcommand("info", "Say what a file is and what is in it");
-    add_text(command, "FILE", "A scene, a recording or a trace", info.file)->required();
+void add_info(Command& program, CommandRegistry& registry) {
+    auto& info = registry.options<InfoOptions>();
+    Command command = program.add_command("info", "Print the kind and the contents of a file");
+    command.add_text("FILE", "A scene, a recording or a trace", info.file).required();
     add_json(command, info.json);
-    command.footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt");
-    start.on(command, [&info] { return run_info(info); });
+    command.set_footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt");
+    registry.on(command, [&info] { return run_info(info); });
 }
 
 }  // namespace fase::cli

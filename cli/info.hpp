@@ -1,25 +1,22 @@
 #pragma once
-/// The command `fase info`: says what a file is and what is in it.
+/// The command `fase info`: prints the kind and the contents of a file.
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace fase::cli {
 
-class Start;
+class Command;
+class CommandRegistry;
 
 struct InfoOptions {
-    std::string file;   ///< a glTF scene, a recording or a trace: told apart by its first bytes
+    std::string file;   ///< a glTF scene, a recording or a trace: its first bytes decide
     bool json = false;  ///< one JSON value on stdout instead of lines
 };
 
-/// Prints the kind, counts, extensions and warnings. Returns the exit code: 0; 2 the file is none that Fase reads, or
-/// broken; 3 it cannot be opened; 4 too little memory.
+/// Prints the kind, counts, extensions and warnings. Returns the exit code: 0; 2 the file has an unknown format or is
+/// damaged; 3 it cannot be opened; 4 too little memory.
 int run_info(const InfoOptions& options);
 
 /// Adds the command to the program.
-void add_info(CLI::App& app, Start& start);
+void add_info(Command& program, CommandRegistry& registry);
 
 }  // namespace fase::cli

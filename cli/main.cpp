@@ -1,4 +1,4 @@
-/// The program `fase`: takes the command line apart and starts the command it names.
+/// The program `fase`: parses the command line and runs the command that it names.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -7,8 +7,8 @@
 
 #include "cli/atlas.hpp"
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "cli/distance.hpp"
 #include "cli/draw.hpp"
 #include "cli/generate.hpp"
@@ -30,53 +30,45 @@ namespace fase::cli {
 namespace {
 
 #ifdef HAS_FASE_BENCH
-void add_bench(CLI::App& app, Start& start) {
-    CLI::App& group = *app.add_subcommand("bench", "Measure, beside other engines");
-    group.require_subcommand(1);
-    add_bench_step(group, start);
-    add_bench_pairs(group, start);
-    add_bench_queries(group, start);
-    add_bench_sudden(group, start);
+void add_bench(Command& program, CommandRegistry& registry) {
+    Command group = program.add_command("bench", "Run benchmarks of Fase and of other engines");
+    group.require_command();
+    add_bench_step(group, registry);
+    add_bench_pairs(group, registry);
+    add_bench_queries(group, registry);
+    add_bench_sudden(group, registry);
 }
 #endif
 
 int run_program(int count, char** arguments) {
-    Start start;
-    CLI::App app("Collision detection and rigid-body physics: simulate, record, look, measure.", "fase");
-    app.set_version_flag("--version", fmt::format("fase {}", library_version()));
-    app.require_subcommand(1);
-    app.footer(
-        "\nA first look:\n"
+    CommandRegistry registry;
+    CommandLine line("fase", "Collision detection and rigid-body physics: simulate, record, view, measure.",
+                     fmt::format("fase {}", library_version()));
+    Command program = line.root();
+    program.require_command();
+    program.set_footer(
+        "\nFirst steps:\n"
         "  fase generate castle -o castle.glb\n"
         "  fase run castle.glb --seconds 12 --record castle.faserec\n"
         "  fase view castle.faserec\n"
-        "\nAn argument that begins with '-' but is no option goes behind '--' or '='.\n"
-        "Exit codes: 0 done, 1 a check failed, 2 bad input, 3 a file failed, 4 a limit, 70 a mistake of ours, 130 "
+        "\nAn argument that begins with '-' but is not an option follows '--' or '='.\n"
+        "Exit codes: 0 success, 1 a check failed, 2 bad input, 3 a file error, 4 a limit, 70 an internal error, 130 "
         "Ctrl-C.");
-    add_run(app, start);
-    add_view(app, start);
-    add_info(app, start);
-    add_generate(app, start);
-    add_distance(app, start);
-    add_draw(app, start);
-    add_pairs(app, start);
-    add_query(app, start);
-    add_atlas(app, start);
-    add_level(app, start);
+    add_run(program, registry);
+    add_view(program, registry);
+    add_info(program, registry);
+    add_generate(program, registry);
+    add_distance(program, registry);
+    add_draw(program, registry);
+    add_pairs(program, registry);
+    add_query(program, registry);
+    add_atlas(program, registry);
+    add_level(program, registry);
 #ifdef HAS_FASE_BENCH
-    add_bench(app, start);
+    add_bench(program, registry);
 #endif
-    try {
-        app.parse(count, arguments);
-    } catch (const CLI::Success& help) {
-        app.exit(help);  // prints help or version on stdout
-        return exit_ok;
-    } catch (const CLI::ParseError& error) {
-        const std::string line = usage_problem(app, error);
-        std::fwrite(line.data(), 1, line.size(), stderr);
-        return exit_bad_input;
-    }
-    return start();
+    if (const std::optional<int> code = line.parse(count, arguments)) return *code;
+    return registry.run();
 }
 
 }  // namespace
@@ -91,7 +83,7 @@ int main(int count, char** arguments) {
     } catch (const std::bad_alloc&) {
         code = cli::refuse({fase::Status::NoMemory, "fase", "found too little memory", {}});
     } catch (const std::exception& error) {
-        std::fputs(("fase: error: mistake of ours: " + cli::printable(error.what()) + "\n").c_str(), stderr);
+        std::fputs(("fase: error: internal error: " + cli::printable(error.what()) + "\n").c_str(), stderr);
     }
     return cli::finish_output(code);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// How long structures take to find the pairs of a trace, and whether they find the right ones.
+/// Measures how long structures take to find the pairs of a trace, and checks the pairs.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,42 +15,43 @@
 
 namespace fase::cli {
 
-/// How many frames are done, of how many, and what is being done; false: stop.
-using Tell = std::function<bool(std::uint64_t done, std::uint64_t total, std::string_view what)>;
+/// Reports progress: finished frames, all frames, the current work. Returns false to stop.
+using ReportProgress = std::function<bool(std::uint64_t done, std::uint64_t total, std::string_view what)>;
 
-/// What one structure made of a trace. Nothing is measured when `skipped` says why.
+/// The figures of one structure for a trace. If `skipped` gives a reason, nothing was measured.
 struct PairFigures {
     std::string structure, chosen;
-    std::string reason;  ///< of an automatic choice: which population stands in what, and why
+    std::string reason;  ///< of an automatic choice: the structure of each motion state, and why
     std::string skipped;
     int threads = 1;
     std::uint64_t frames = 0;
-    double build_ms = 0;                         ///< filling it with the first frame, pairs of what rests included
-    bench::Timing ms;                            ///< of a frame: taking the new boxes and finding all current pairs
-    std::uint64_t begun_sum = 0, ended_sum = 0;  ///< pairs that did, all frames but the first; when changes are told
-    double min_ms = 0;                           ///< of a frame: what a busy machine disturbs least
-    std::uint64_t pairs_first = 0, pairs_last = 0, pairs_sum = 0;  ///< of the first frame, the last one, all
-    std::uint64_t hash = 0;       ///< of the pair sets of all frames; the order of pairs within a frame does not count
+    double build_ms = 0;                         ///< building it from the first frame, including pairs of resting boxes
+    bench::Timing ms;                            ///< per frame: updating the boxes and finding all current pairs
+    std::uint64_t begun_sum = 0, ended_sum = 0;  ///< pairs that begin or end after the first frame; with `changes`
+    double min_ms = 0;                           ///< per frame: the figure that other load disturbs least
+    std::uint64_t pairs_first = 0, pairs_last = 0, pairs_sum = 0;  ///< of the first frame, of the last one, of all
+    std::uint64_t hash = 0;       ///< of the pair sets of all frames; independent of the order of pairs in a frame
     broad::StructureStats stats;  ///< of the structures, after the last frame
-    std::optional<bool> right;    ///< whether each frame's pairs are the judge's; none: not asked
+    std::optional<bool> correct;  ///< whether each frame's pairs match the reference; none: not checked
 };
 
-/// A look at a trace before it is measured.
+/// Facts about a trace, collected before it is measured.
 struct TraceSurvey {
-    std::uint64_t frames = 0;  ///< that are to be measured
+    std::uint64_t frames = 0;  ///< to measure
     std::uint64_t static_boxes = 0, asleep_boxes = 0;
-    std::vector<broad::PairSetFingerprint> judged;  ///< a frame: its right pairs; empty: not asked
+    std::vector<broad::PairSetFingerprint> reference;  ///< per frame: its correct pairs; empty: not checked
 };
 
-/// Reads `frames` frames (0: all) and so judges the file; with `judge` finds their pairs by trying all (up to 1,000
-/// boxes) or with a plain sweep. Format as of TraceReader; Capacity for a frame with more pairs than 2^28, guessed
-/// from a sample of its boxes; without `judge` a sample of the frames too.
-Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool judge, const Tell& tell);
+/// Reads, and so validates, `frames` frames (0: all). With `check`, finds their pairs by testing all (up to 1,000
+/// boxes) or with a plain sweep. Format: see TraceReader. Capacity for a frame with more than 2^28 pairs, estimated
+/// from a sample of its boxes; without `check` only a sample of the frames is estimated.
+Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool check, const ReportProgress& report);
 
-/// Plays the trace to a structure. With `changes`, a frame tells which pairs began, stay and ended instead of listing
-/// all, and what is checked are the sets that follow from them. With a limit, a structure that would take more seconds,
-/// or has, is skipped.
+/// Updates a structure with each frame of the trace and finds the pairs. With `changes`, a frame reports which pairs
+/// begin, stay and end instead of listing all; the check then uses the sets that follow from the changes. With a limit,
+/// a structure that takes more seconds, or is expected to, is skipped.
 Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey& survey, const StructureChoice& choice,
-                                  TaskRunner& tasks, bool changes, std::optional<double> max_seconds, const Tell& tell);
+                                  TaskRunner& tasks, bool changes, std::optional<double> max_seconds,
+                                  const ReportProgress& report);
 
 }  // namespace fase::cli

@@ -1,9 +1,10 @@
-/// How many questions a second structures answer, and whether they answer right.
+/// Measures how many queries per second structures answer, and checks the answers.
 #include "cli/measure_queries.hpp"
 
 #include <algorithm>
 #include <chrono>
 
+#include "fase/broad/auto_structure.hpp"
 #include "fase/broad/measure.hpp"
 
 namespace fase::cli {
@@ -15,33 +16,33 @@ using broad::Proxy;
 using broad::RayMeasure;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t max_judged = 64;
+constexpr std::size_t max_checked = 64;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Keeps the nearest, of equally near ones the least place.
+/// Keeps the nearest box; among equally near ones the lowest proxy.
 class NearestRay {
 public:
-    /// The limit from there on.
-    float see(Proxy p, float at) {
-        if (at < hit_.at || (at == hit_.at && p < hit_.proxy)) hit_ = {at, p};
-        return hit_.at;
+    /// Adds a candidate; returns the new limit of the search.
+    float add(Proxy p, float distance) {
+        if (distance < hit_.distance || (distance == hit_.distance && p < hit_.proxy)) hit_ = {distance, p};
+        return hit_.distance;
     }
-    [[nodiscard]] JudgedQueries::Ray hit() const { return hit_; }
+    [[nodiscard]] ReferenceAnswers::Ray hit() const { return hit_; }
 
 private:
-    JudgedQueries::Ray hit_{broad::beyond, 0xffffffff};
+    ReferenceAnswers::Ray hit_{broad::infinite_distance, no_index};
 };
 
-JudgedQueries::Ray nearest(const AnyStructure& structure, const Ray& ray) {
+ReferenceAnswers::Ray nearest(const AnyStructure& structure, const Ray& ray) {
     NearestRay nearest;
     structure.nearest_first(RayMeasure(ray), ray.length,
-                            [&](Proxy p, const Aabb&, float at) { return nearest.see(p, at); });
+                            [&](Proxy p, const Aabb&, float distance) { return nearest.add(p, distance); });
     return nearest.hit();
 }
 
-JudgedQueries::Frustum seen(const AnyStructure& structure, const Frustum& frustum) {
-    JudgedQueries::Frustum seen;
+ReferenceAnswers::Frustum seen(const AnyStructure& structure, const Frustum& frustum) {
+    ReferenceAnswers::Frustum seen;
     structure.cull(FrustumRegion(frustum), [&](std::span<const Proxy> proxies, bool whole) {
         std::vector<Proxy>& out = whole ? seen.whole : seen.partly;
         out.insert(out.end(), proxies.begin(), proxies.end());
@@ -50,95 +51,101 @@ JudgedQueries::Frustum seen(const AnyStructure& structure, const Frustum& frustu
     return seen;
 }
 
-bool is_right(const AnyStructure& structure, const QuerySet& set, const JudgedQueries& judged) {
-    for (std::size_t i = 0; i < judged.rays.size(); ++i)
-        if (!(nearest(structure, set.rays[i]) == judged.rays[i])) return false;
-    for (std::size_t i = 0; i < judged.boxes.size(); ++i) {
+bool is_correct(const AnyStructure& structure, const QuerySet& set, const ReferenceAnswers& reference) {
+    for (std::size_t i = 0; i < reference.rays.size(); ++i)
+        if (!(nearest(structure, set.rays[i]) == reference.rays[i])) return false;
+    for (std::size_t i = 0; i < reference.boxes.size(); ++i) {
         std::vector<Proxy> found;
         structure.overlapping(set.boxes[i], found);
         std::sort(found.begin(), found.end());
-        if (found != judged.boxes[i]) return false;
+        if (found != reference.boxes[i]) return false;
     }
-    for (std::size_t i = 0; i < judged.frusta.size(); ++i)
-        if (!(seen(structure, set.frusta[i]) == judged.frusta[i])) return false;
+    for (std::size_t i = 0; i < reference.frusta.size(); ++i)
+        if (!(seen(structure, set.frusta[i]) == reference.frusta[i])) return false;
     return true;
 }
 
-/// Asks all questions, again and again when that is soon done, until the time is over; the clock is looked at after
-/// some of them.
-template <class Questions, class Ask>
-QueryRate rate_of(const Questions& questions, double max_seconds, const std::function<bool()>& go_on, const Ask& ask) {
-    constexpr double between_looks = 0.01, min_seconds = 0.1;
+/// Runs all queries, repeatedly for at least 0.1 s, until the time limit. Reads the clock about every 10 ms.
+template <class Queries, class Run>
+QueryRate rate_of(const Queries& queries, double max_seconds, const std::function<bool()>& go_on, const Run& run) {
+    constexpr double clock_interval = 0.01, min_seconds = 0.1;
     QueryRate rate;
-    if (questions.empty()) return rate;
-    std::uint64_t asked = 0, hits = 0, next_look = 1;
+    if (queries.empty()) return rate;
+    std::uint64_t done = 0, hits = 0, next_reading = 1;
     double seconds = 0;
     const auto begin = Clock::now();
     while (seconds < min_seconds) {
-        for (const auto& question : questions) {
-            hits += ask(question);
-            if (++asked < next_look) continue;
+        for (const auto& query : queries) {
+            hits += run(query);
+            if (++done < next_reading) continue;
             seconds = seconds_since(begin);
             if (seconds > max_seconds || !go_on()) break;
-            const double each = seconds / static_cast<double>(asked);
-            next_look = asked + 1 + static_cast<std::uint64_t>(between_looks / std::max(each, 1e-8));
+            const double each = seconds / static_cast<double>(done);
+            next_reading = done + 1 + static_cast<std::uint64_t>(clock_interval / std::max(each, 1e-8));
         }
         seconds = seconds_since(begin);
-        if (rate.asked == 0) {
-            rate.asked = asked;
+        if (rate.queries == 0) {
+            rate.queries = done;
             rate.hits = hits;
         }
-        if (asked % questions.size() != 0 || seconds > max_seconds) break;
+        if (done % queries.size() != 0 || seconds > max_seconds) break;
     }
-    rate.per_second = static_cast<double>(asked) / std::max(seconds, 1e-9);
+    rate.per_second = static_cast<double>(done) / std::max(seconds, 1e-9);
     return rate;
 }
 
 }  // namespace
 
-JudgedQueries judge_queries(std::span<const Aabb> boxes, const QuerySet& set) {
-    JudgedQueries judged;
-    for (std::size_t i = 0; i < std::min(max_judged, set.rays.size()); ++i) {
+ReferenceAnswers reference_answers(std::span<const Aabb> boxes, const QuerySet& set) {
+    ReferenceAnswers reference;
+    for (std::size_t i = 0; i < std::min(max_checked, set.rays.size()); ++i) {
         const RayMeasure measure(set.rays[i]);
         NearestRay nearest;
         for (Proxy p = 0; p < boxes.size(); ++p)
-            if (const float at = measure.at(boxes[p], set.rays[i].length); at < broad::beyond) nearest.see(p, at);
-        judged.rays.push_back(nearest.hit());
+            if (const float distance = measure.distance(boxes[p], set.rays[i].length);
+                distance < broad::infinite_distance)
+                nearest.add(p, distance);
+        reference.rays.push_back(nearest.hit());
     }
-    for (std::size_t i = 0; i < std::min(max_judged, set.boxes.size()); ++i) {
-        judged.boxes.emplace_back();
+    for (std::size_t i = 0; i < std::min(max_checked, set.boxes.size()); ++i) {
+        reference.boxes.emplace_back();
         for (Proxy p = 0; p < boxes.size(); ++p)
-            if (overlaps(boxes[p], set.boxes[i])) judged.boxes.back().push_back(p);
+            if (overlaps(boxes[p], set.boxes[i])) reference.boxes.back().push_back(p);
     }
-    for (std::size_t i = 0; i < std::min(max_judged, set.frusta.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(max_checked, set.frusta.size()); ++i) {
         const FrustumRegion region(set.frusta[i]);
-        judged.frusta.emplace_back();
+        reference.frusta.emplace_back();
         for (Proxy p = 0; p < boxes.size(); ++p) {
             if (!region.touches(boxes[p])) continue;
-            (region.contains(boxes[p]) ? judged.frusta.back().whole : judged.frusta.back().partly).push_back(p);
+            (region.contains(boxes[p]) ? reference.frusta.back().whole : reference.frusta.back().partly).push_back(p);
         }
     }
-    return judged;
+    return reference;
 }
 
-QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set, const JudgedQueries* judged,
+QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set, const ReferenceAnswers* reference,
                              const StructureChoice& choice, double max_seconds, const std::function<bool()>& go_on) {
     QueryFigures figures;
-    figures.structure = choice.asked;
+    figures.structure = choice.requested;
     figures.chosen = choice.chosen;
     std::vector<broad::Move> moves;
     moves.reserve(boxes.size());
     for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
     AnyStructure structure = choice.empty;
+    if (choice.requested == "auto") {
+        const broad::BoxStatistics statistics{.boxes = boxes.size(), .use = broad::BoxUse::AnswersQueries};
+        structure = *AnyStructure::named(broad::choose_structure(statistics, {}));
+        figures.chosen = structure.info().name;
+    }
     const auto begin = Clock::now();
     structure.build(moves);
     figures.build_ms = seconds_since(begin) * 1000;
     figures.bytes = structure.bytes();
-    if (judged != nullptr) figures.right = is_right(structure, set, *judged);
+    if (reference != nullptr) figures.correct = is_correct(structure, set, *reference);
 
     const double share = max_seconds / 3;
     figures.rays = rate_of(set.rays, share, go_on, [&](const Ray& ray) {
-        return nearest(structure, ray).at < broad::beyond ? std::uint64_t{1} : 0;
+        return nearest(structure, ray).distance < broad::infinite_distance ? std::uint64_t{1} : 0;
     });
     std::vector<Proxy> found;
     figures.boxes = rate_of(set.boxes, share, go_on, [&](const Aabb& box) {
@@ -153,8 +160,8 @@ QueryFigures measure_queries(std::span<const Aabb> boxes, const QuerySet& set, c
         });
         return std::uint64_t{found.size()};
     });
-    figures.complete = figures.rays.asked == set.rays.size() && figures.boxes.asked == set.boxes.size() &&
-                       figures.frusta.asked == set.frusta.size();
+    figures.complete = figures.rays.queries == set.rays.size() && figures.boxes.queries == set.boxes.size() &&
+                       figures.frusta.queries == set.frusta.size();
     return figures;
 }
 

@@ -1,4 +1,4 @@
-/// The command `fase pairs`: plays a trace of boxes to structures, times how they find its pairs, and checks these.
+/// The command `fase pairs`: times how structures find the pairs of a trace of boxes, and checks the pairs.
 #include "cli/pairs.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
-#include "cli/common/start.hpp"
 #include "cli/common/table.hpp"
 #include "cli/measure_pairs.hpp"
 #include "fase/core/simd.hpp"
@@ -32,7 +32,8 @@ std::string json_of(const PairFigures& row) {
             "\"ended_sum\": {}, ",
             row.frames, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.min_ms, row.pairs_first,
             row.pairs_last, row.pairs_sum, row.hash, row.stats.bytes, row.stats.depth, row.stats.nodes,
-            row.stats.occupancy(), row.right ? (*row.right ? "true" : "false") : "null", row.begun_sum, row.ended_sum);
+            row.stats.occupancy(), row.correct ? (*row.correct ? "true" : "false") : "null", row.begun_sum,
+            row.ended_sum);
     } else {
         for (const char* key : {"frames", "build_ms", "ms", "pairs_first", "pairs_last", "pairs_sum", "hash", "bytes",
                                 "depth", "nodes", "boxes_per_leaf", "checked", "begun_sum", "ended_sum"})
@@ -51,7 +52,7 @@ std::string to_json(const std::vector<PairFigures>& rows) {
 
 std::string to_table(const std::vector<PairFigures>& rows) {
     Table table({"structure", "build ms", "mean ms", "median ms", "worst ms", "pairs first", "pairs last", "pairs sum",
-                 "bytes", "depth", "a leaf", "hash", "check"});
+                 "bytes", "depth", "per leaf", "hash", "check"});
     for (const PairFigures& row : rows) {
         const std::string name = row.structure == row.chosen ? row.structure : row.structure + ": " + row.chosen;
         if (!row.skipped.empty()) {
@@ -63,7 +64,7 @@ std::string to_table(const std::vector<PairFigures>& rows) {
                    std::to_string(row.pairs_first), std::to_string(row.pairs_last), std::to_string(row.pairs_sum),
                    std::to_string(row.stats.bytes), std::to_string(row.stats.depth),
                    fmt::format("{:.1f}", row.stats.occupancy()), fmt::format("{:016x}", row.hash),
-                   row.right ? (*row.right ? "ok" : "WRONG") : "-"});
+                   row.correct ? (*row.correct ? "ok" : "WRONG") : "-"});
     }
     std::string text = table.text();
     for (const PairFigures& row : rows)
@@ -74,12 +75,12 @@ std::string to_table(const std::vector<PairFigures>& rows) {
     return text;
 }
 
-std::string head_of(const record::TraceReader& trace, const TraceSurvey& seen, int threads) {
+std::string head_of(const record::TraceReader& trace, const TraceSurvey& survey, int threads) {
     const auto plural = [](std::uint64_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };
     return fmt::format("{}: {}, {} static, {} asleep; {} of {}; {}\n", printable(trace.path()),
-                       plural(trace.boxes(), "box", "boxes"), seen.static_boxes, seen.asleep_boxes, seen.frames,
+                       plural(trace.boxes(), "box", "boxes"), survey.static_boxes, survey.asleep_boxes, survey.frames,
                        plural(trace.frames(), "frame", "frames"),
                        plural(static_cast<std::uint64_t>(threads), "thread", "threads"));
 }
@@ -99,58 +100,59 @@ int run_pairs(const PairsOptions& options) {
 
     const Interrupts interrupts;
     std::optional<Progress> progress;
-    std::string begun;
-    const Tell tell = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
-        if (begun != what) {
+    std::string current;
+    const ReportProgress report = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
+        if (current != what) {
             progress.emplace(progress_form(true), "frame", total);
-            begun = what;
+            current = what;
         }
         if (progress->due()) progress->update(done, what);
         return Interrupts::signal() == 0;
     };
-    const Result<TraceSurvey> seen = survey(*trace, options.frames, options.check, tell);
-    if (!seen) return refuse(seen.error());
+    const Result<TraceSurvey> surveyed = survey(*trace, options.frames, options.check, report);
+    if (!surveyed) return refuse(surveyed.error());
     const std::unique_ptr<TaskRunner> tasks = make_thread_runner(options.threads);
     const bool bounded = options.structure == "all";
     std::vector<PairFigures> rows;
     for (const StructureChoice& choice : *choices) {
         if (Interrupts::signal() != 0) break;
-        Result<PairFigures> row = measure_pairs(*trace, *seen, choice, *tasks, options.changes,
-                                                bounded ? std::optional<double>(options.limit) : std::nullopt, tell);
+        Result<PairFigures> row = measure_pairs(*trace, *surveyed, choice, *tasks, options.changes,
+                                                bounded ? std::optional<double>(options.limit) : std::nullopt, report);
         if (!row) return refuse(row.error());
         if (Interrupts::signal() == 0) rows.push_back(*std::move(row));
     }
-    const std::string text = options.json ? to_json(rows) : head_of(*trace, *seen, tasks->threads()) + to_table(rows);
+    const std::string text =
+        options.json ? to_json(rows) : head_of(*trace, *surveyed, tasks->threads()) + to_table(rows);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
-    const bool all_right =
-        std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.right.value_or(true); });
-    return all_right ? exit_ok : exit_check_failed;
+    const bool all_correct =
+        std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.correct.value_or(true); });
+    return all_correct ? exit_ok : exit_check_failed;
 }
 
-void add_pairs(CLI::App& app, Start& start) {
-    auto& pairs = start.options<PairsOptions>();
-    CLI::App& command = *app.add_subcommand("pairs", "Time and check how structures find the pairs of a trace");
-    add_text(command, "TRACE", "Boxes frame by frame (.aabt): of 'fase generate' or 'fase run --trace'", pairs.trace)
-        ->required();
+void add_pairs(Command& program, CommandRegistry& registry) {
+    auto& pairs = registry.options<PairsOptions>();
+    Command command = program.add_command("pairs", "Time and check how structures find the pairs of a trace");
+    command.add_text("TRACE", "A trace (.aabt) from 'fase generate' or 'fase run --trace'", pairs.trace).required();
     add_structure(command, "auto (default), all, ", pairs.structure);
     add_threads(command, "0: all cores (default 1)", 0, pairs.threads);
-    add_text(command, "--simd", "Widest instructions to use: " + simd_levels() + " (default best)", pairs.simd);
-    add_whole_number(command, "--frames", "The first N frames (default: all)", 1, 0xffffffff, pairs.frames);
-    add_positive_number(command, "--limit", "Seconds; of all, those that take longer are skipped (default 60)", 1e6,
-                        [&pairs](double value) { pairs.limit = value; });
-    command.add_flag("--check", pairs.check, "Hold the pairs of each frame against a plain sweep's");
-    command.add_flag("--changes", pairs.changes, "Tell which pairs began, stay and ended, instead of listing all");
+    command.add_text("--simd", "Widest instructions to use: " + simd_levels() + " (default best)", pairs.simd);
+    command.add_whole_number("--frames", "The first N frames (default: all)", 1, 0xffffffff, pairs.frames);
+    command.add_positive_number("--limit", "Seconds; with all, structures that take longer are skipped (default 60)",
+                                1e6, [&pairs](double value) { pairs.limit = value; });
+    command.add_flag("--check", "Compare the pairs of each frame with those of a plain sweep", pairs.check);
+    command.add_flag("--changes", "Report which pairs begin, stay and end, instead of listing all", pairs.changes);
     add_json(command, pairs.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase pairs rain.aabt\n"
         "  fase pairs rain.aabt --structure all --check\n"
         "  fase pairs rain.aabt --structure brute_force --frames 10 --threads 4 --json\n"
-        "\nA frame's time is that of taking its boxes and finding all its pairs: of two that overlap or touch, unless\n"
-        "both are static. The hash is of the pair sets of all frames; the order in which pairs are found does not "
-        "count.\nExit code 1: a structure found other pairs than it should have.");
-    start.on(command, [&pairs] { return run_pairs(pairs); });
+        "\nA frame's time is the time to update its boxes and to find all pairs of boxes that overlap or touch, "
+        "except\n"
+        "pairs of two static boxes. The hash covers the pair sets of all frames; the order of pairs does not matter.\n"
+        "Exit code 1: a structure found wrong pairs.");
+    registry.on(command, [&pairs] { return run_pairs(pairs); });
 }
 
 }  // namespace fase::cli

@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/load_scene.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
-#include "cli/common/start.hpp"
 #include "cli/common/table.hpp"
 #include "cli/measure_queries.hpp"
 #include "fase/scene/detail/json.hpp"
@@ -33,19 +33,20 @@ std::string to_json(const std::vector<QueryFigures>& rows) {
             "{{\"structure\": {}, \"build_ms\": {:.6g}, \"rays_per_second\": {}, \"boxes_per_second\": {}, "
             "\"frusta_per_second\": {}, \"hits\": {}, \"checked\": {}, ",
             scene::quoted(row.structure), row.build_ms, rate(row.rays), rate(row.boxes), rate(row.frusta),
-            row.complete ? std::to_string(hits_of(row)) : "null", row.right ? (*row.right ? "true" : "false") : "null");
+            row.complete ? std::to_string(hits_of(row)) : "null",
+            row.correct ? (*row.correct ? "true" : "false") : "null");
         text += fmt::format(
             "\"chosen\": {}, \"rays\": {}, \"ray_hits\": {}, \"boxes\": {}, \"box_hits\": {}, \"frusta\": {}, "
             "\"frustum_hits\": {}, \"complete\": {}, \"bytes\": {}}}",
-            scene::quoted(row.chosen), row.rays.asked, row.rays.hits, row.boxes.asked, row.boxes.hits, row.frusta.asked,
-            row.frusta.hits, row.complete, row.bytes);
+            scene::quoted(row.chosen), row.rays.queries, row.rays.hits, row.boxes.queries, row.boxes.hits,
+            row.frusta.queries, row.frusta.hits, row.complete, row.bytes);
     }
     return text + "\n]\n";
 }
 
 std::string to_table(const std::vector<QueryFigures>& rows) {
-    Table table(
-        {"structure", "build ms", "rays/s", "boxes/s", "frusta/s", "rays hit", "boxes hit", "seen", "bytes", "check"});
+    Table table({"structure", "build ms", "rays/s", "boxes/s", "frusta/s", "rays hit", "boxes hit", "visible", "bytes",
+                 "check"});
     const auto rate = [](const QueryRate& r) {
         return r.per_second ? fmt::format("{:.0f}", *r.per_second) : std::string("-");
     };
@@ -53,10 +54,10 @@ std::string to_table(const std::vector<QueryFigures>& rows) {
         const std::string name = row.structure == row.chosen ? row.structure : row.structure + ": " + row.chosen;
         table.add({name, fmt::format("{:.3f}", row.build_ms), rate(row.rays), rate(row.boxes), rate(row.frusta),
                    std::to_string(row.rays.hits), std::to_string(row.boxes.hits), std::to_string(row.frusta.hits),
-                   std::to_string(row.bytes), row.right ? (*row.right ? "ok" : "WRONG") : "-"});
+                   std::to_string(row.bytes), row.correct ? (*row.correct ? "ok" : "WRONG") : "-"});
         if (!row.complete) {
-            table.add_note("", fmt::format("stopped when its time was over: after {} rays, {} boxes, {} frusta",
-                                           row.rays.asked, row.boxes.asked, row.frusta.asked));
+            table.add_note("", fmt::format("stopped at its time limit: after {} rays, {} boxes, {} frusta",
+                                           row.rays.queries, row.boxes.queries, row.frusta.queries));
         }
     }
     return table.text();
@@ -71,19 +72,20 @@ int run_query(const QueryOptions& options) {
     if (!boxes) return refuse(boxes.error());
 
     const Interrupts interrupts;
-    const QuerySet set = strew_queries(*boxes, options.counts, options.seed);
-    std::optional<JudgedQueries> judged;
-    if (options.check) judged = judge_queries(*boxes, set);
+    const QuerySet set = random_queries(*boxes, options.counts, options.seed);
+    std::optional<ReferenceAnswers> reference;
+    if (options.check) reference = reference_answers(*boxes, set);
     std::vector<QueryFigures> rows;
     {
         Progress progress(progress_form(true), "structure", choices->size());
         for (const StructureChoice& choice : *choices) {
             const auto go_on = [&] {
-                if (progress.due()) progress.update(rows.size(), choice.asked);
+                if (progress.due()) progress.update(rows.size(), choice.requested);
                 return Interrupts::signal() == 0;
             };
             if (!go_on()) break;
-            QueryFigures row = measure_queries(*boxes, set, judged ? &*judged : nullptr, choice, options.limit, go_on);
+            QueryFigures row =
+                measure_queries(*boxes, set, reference ? &*reference : nullptr, choice, options.limit, go_on);
             if (Interrupts::signal() == 0) rows.push_back(std::move(row));
         }
     }
@@ -93,35 +95,38 @@ int run_query(const QueryOptions& options) {
     const std::string text = options.json ? to_json(rows) : head + to_table(rows);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
-    const bool all_right =
-        std::all_of(rows.begin(), rows.end(), [](const QueryFigures& row) { return row.right.value_or(true); });
-    return all_right ? exit_ok : exit_check_failed;
+    const bool all_correct =
+        std::all_of(rows.begin(), rows.end(), [](const QueryFigures& row) { return row.correct.value_or(true); });
+    return all_correct ? exit_ok : exit_check_failed;
 }
 
-void add_query(CLI::App& app, Start& start) {
-    constexpr std::uint64_t most = 10'000'000;
-    auto& query = start.options<QueryOptions>();
-    CLI::App& command = *app.add_subcommand("query", "Time and check how structures answer rays, boxes and frusta");
-    add_text(command, "SCENE_OR_TRACE", "A .gltf or .glb file, a kind of 'fase generate', or a trace (its first frame)",
-             query.file)
-        ->required();
+void add_query(Command& program, CommandRegistry& registry) {
+    constexpr std::uint64_t max_count = 10'000'000;
+    auto& query = registry.options<QueryOptions>();
+    Command command = program.add_command("query", "Time and check how structures answer rays, boxes and frusta");
+    command
+        .add_text("SCENE_OR_TRACE", "A .gltf or .glb file, a kind of 'fase generate', or a trace (its first frame)",
+                  query.file)
+        .required();
     add_structure(command, "auto (default), all, ", query.structure);
-    add_whole_number(command, "--rays", "Rays for the nearest box (default 10000)", 0, most, query.counts.rays);
-    add_whole_number(command, "--boxes", "Boxes for all that they overlap (default 10000)", 0, most,
-                     query.counts.boxes);
-    add_whole_number(command, "--frusta", "Views for all that they show (default 100)", 0, most, query.counts.frusta);
-    add_seed(command, "Other questions", query.seed);
-    add_positive_number(command, "--limit", "Seconds that a structure has for its answers (default 60)", 1e6,
-                        [&query](double value) { query.limit = value; });
-    command.add_flag("--check", query.check, "Hold the first 64 answers of each kind against those of trying all");
+    command.add_whole_number("--rays", "Rays that find their nearest box (default 10000)", 0, max_count,
+                             query.counts.rays);
+    command.add_whole_number("--boxes", "Boxes that find all boxes they overlap (default 10000)", 0, max_count,
+                             query.counts.boxes);
+    command.add_whole_number("--frusta", "Frusta that find all visible boxes (default 100)", 0, max_count,
+                             query.counts.frusta);
+    add_seed(command, "Seed of the random queries (default 1)", query.seed);
+    command.add_positive_number("--limit", "Time limit per structure, seconds (default 60)", 1e6,
+                                [&query](double value) { query.limit = value; });
+    command.add_flag("--check", "Compare the first 64 answers of each kind with brute force", query.check);
     add_json(command, query.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase query castle.glb\n"
         "  fase query uniform.aabt --structure all --check\n"
         "  fase query castle --rays 100000 --boxes 0 --frusta 0 --json\n"
-        "\nExit code 1: a structure gave another answer than it should have.");
-    start.on(command, [&query] { return run_query(query); });
+        "\nExit code 1: a structure gave a wrong answer.");
+    registry.on(command, [&query] { return run_query(query); });
 }
 
 }  // namespace fase::cli

@@ -5,30 +5,27 @@
 
 #include "cli/query_set.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace fase::cli {
 
-class Start;
+class Command;
+class CommandRegistry;
 
 struct QueryOptions {
-    std::string file;                ///< a scene, a kind of one, or a trace, of which the first frame is taken
+    std::string file;                ///< a scene, a kind of generated scene, or a trace: its first frame is used
     std::string structure = "auto";  ///< a name, auto, or all
-    QueryCounts counts;              ///< 0 of a kind: not asked
-    std::uint64_t seed = 1;          ///< of the questions
-    double limit = 60;               ///< s a structure; one that is not done by then tells how far it came
-    bool check = false;              ///< hold the first 64 answers of each kind against those of trying all
+    QueryCounts counts;              ///< a count of 0 omits this kind
+    std::uint64_t seed = 1;          ///< of the random queries
+    double limit = 60;               ///< s per structure; a structure that is stopped reports how many queries it did
+    bool check = false;              ///< compare the first 64 answers of each kind with brute force
     bool json = false;               ///< one JSON array on stdout instead of a table
 };
 
-/// Prints a row for each structure. Returns the exit code: 0; 1 a check was asked for and a structure gave another
-/// answer; 2 the file is broken or an option cannot be meant; 3 it cannot be read; 4 too little memory; 130 or 143 when
-/// a signal ended it, after the rows of the structures that were done.
+/// Prints a row for each structure. Returns the exit code: 0; 1 the check found a wrong answer; 2 the file is damaged
+/// or an option is invalid; 3 it cannot be read; 4 too little memory; 130 or 143 when a signal ended the run, after the
+/// rows of the finished structures.
 int run_query(const QueryOptions& options);
 
 /// Adds the command to the program.
-void add_query(CLI::App& app, Start& start);
+void add_query(Command& program, CommandRegistry& registry);
 
 }  // namespace fase::cli

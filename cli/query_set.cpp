@@ -1,4 +1,4 @@
-/// The questions that `fase query` asks: rays, boxes and cameras strewn over a set of boxes.
+/// The queries of `fase query`: random rays, boxes and cameras in a set of boxes.
 #include "cli/query_set.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ Vec3 point_in(Random& random, const Aabb& box) {
     const float x = random.between(box.lo.x, box.hi.x), y = random.between(box.lo.y, box.hi.y);
     return {x, y, random.between(box.lo.z, box.hi.z)};
 }
-/// Unit, all directions alike: a point of a ball, drawn until it is in it.
+/// A uniformly distributed unit vector: rejects points of a cube outside the unit ball.
 Vec3 direction(Random& random) {
     for (;;) {
         const Vec3 p = point_in(random, {{-1, -1, -1}, {1, 1, 1}});
@@ -22,68 +22,71 @@ Vec3 direction(Random& random) {
     }
 }
 
-Frustum seen_from(Vec3 eye, Vec3 forward, Vec3 any, float far) {
+Frustum view_frustum(Vec3 eye, Vec3 forward, Vec3 any, float far) {
     constexpr double half_width = 0.5773502691896258, half_height = half_width * 9 / 16;  // tan 30°
     constexpr double near = 0.1;
     const Vec3d f = to_double(forward);
     Vec3d right = cross(f, to_double(any));
     right = right * (1 / length(right));
-    const Vec3d up = cross(right, f), at = to_double(eye);
+    const Vec3d up = cross(right, f), origin = to_double(eye);
     const auto side = [&](Vec3d normal) {
         normal = normal * (1 / length(normal));
-        return Frustum::Side{normal, dot(normal, at)};
+        return Frustum::Side{normal, dot(normal, origin)};
     };
     Frustum frustum;
-    frustum.sides = {side(-right - f * half_width),         side(right - f * half_width),
-                     side(-up - f * half_height),           side(up - f * half_height),
-                     Frustum::Side{-f, -dot(f, at) - near}, Frustum::Side{f, dot(f, at) + double(far)}};
+    frustum.sides = {side(-right - f * half_width),
+                     side(right - f * half_width),
+                     side(-up - f * half_height),
+                     side(up - f * half_height),
+                     Frustum::Side{-f, -dot(f, origin) - near},
+                     Frustum::Side{f, dot(f, origin) + double(far)}};
     return frustum;
 }
 
-/// Where most of the boxes are, and how large they are in the mean.
-struct Place {
-    Aabb around;
+/// The bounds of the boxes and their mean size.
+struct BoxesSummary {
+    Aabb bounds;
     Vec3 mean_extent;
 };
-Place place_of(std::span<const Aabb> boxes) {
+BoxesSummary summary_of(std::span<const Aabb> boxes) {
     constexpr float far = 1e7f;
-    constexpr Aabb reach{{-far, -far, -far}, {far, far, far}};
-    Aabb around;
+    constexpr Aabb limits{{-far, -far, -far}, {far, far, far}};
+    Aabb bounds;
     Vec3d sum{};
     double count = 0;
     for (const Aabb& box : boxes) {
-        if (is_empty(box) || !contains(reach, box)) continue;
-        around = merge(around, box);
+        if (is_empty(box) || !contains(limits, box)) continue;
+        bounds = merge(bounds, box);
         sum += to_double(extent(box));
         ++count;
     }
     if (count == 0) return {{{-1, -1, -1}, {1, 1, 1}}, {1, 1, 1}};
-    return {around, to_float(sum * (1 / count))};
+    return {bounds, to_float(sum * (1 / count))};
 }
 
 }  // namespace
 
-QuerySet strew_queries(std::span<const Aabb> boxes, const QueryCounts& counts, std::uint64_t seed) {
-    const Place place = place_of(boxes);
-    const float across = std::max(length(extent(place.around)), 1e-3f);
+QuerySet random_queries(std::span<const Aabb> boxes, const QueryCounts& counts, std::uint64_t seed) {
+    const BoxesSummary summary = summary_of(boxes);
+    const float diagonal = std::max(length(extent(summary.bounds)), 1e-3f);
     QuerySet set;
-    // Streams of their own: how many rays there are does not change the boxes.
+    // One random stream per kind: the number of rays does not change the boxes.
     Random random(seed, 0);
     for (std::size_t i = 0; i < counts.rays; ++i) {
-        const Vec3 from = point_in(random, place.around);
-        set.rays.push_back({to_double(from), direction(random), across});
+        const Vec3 from = point_in(random, summary.bounds);
+        set.rays.push_back({to_double(from), direction(random), diagonal});
     }
     random = Random(seed, 1);
     for (std::size_t i = 0; i < counts.boxes; ++i) {
-        const Vec3 at = point_in(random, place.around);
-        set.boxes.push_back({at - place.mean_extent, at + place.mean_extent});
+        const Vec3 centre = point_in(random, summary.bounds);
+        set.boxes.push_back({centre - summary.mean_extent, centre + summary.mean_extent});
     }
     random = Random(seed, 2);
     for (std::size_t i = 0; i < counts.frusta; ++i) {
-        const Vec3 eye = point_in(random, place.around), forward = direction(random);
+        const Vec3 eye = point_in(random, summary.bounds), forward = direction(random);
         Vec3 any = direction(random);
         while (length_squared(cross(forward, any)) < 0.01f) any = direction(random);
-        set.frusta.push_back(seen_from(eye, forward, any, across / 4));
+        set.frusta.push_back(view_frustum(eye, forward, any, diagonal / 4));
     }
     return set;
 }

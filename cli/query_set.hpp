@@ -1,5 +1,5 @@
 #pragma once
-/// The questions that `fase query` asks: rays, boxes and cameras strewn over a set of boxes.
+/// The queries of `fase query`: random rays, boxes and cameras in a set of boxes.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,20 +9,21 @@
 
 namespace fase::cli {
 
-/// How many of each.
+/// Number of queries of each kind.
 struct QueryCounts {
     std::size_t rays = 10000, boxes = 10000, frusta = 100;
 };
 
-/// What is asked, in the order in which it is asked.
+/// The queries, in the order in which they run.
 struct QuerySet {
-    std::vector<Ray> rays;        ///< from anywhere to anywhere, as long as the set is across
+    std::vector<Ray> rays;        ///< random origins and directions; length: the diagonal of the set
     std::vector<Aabb> boxes;      ///< twice as large as the mean box
-    std::vector<Frustum> frusta;  ///< of cameras that see 60 degrees wide, a quarter of the set far
+    std::vector<Frustum> frusta;  ///< of cameras: 60 degrees wide, a quarter of the diagonal deep
 };
 
-/// Equal boxes, counts and seeds give equal questions. Boxes that are infinite, or 1e7 m off, do not count for where is
-/// asked; with none that counts, it is around the origin.
-[[nodiscard]] QuerySet strew_queries(std::span<const Aabb> boxes, const QueryCounts& counts, std::uint64_t seed);
+/// Generates queries inside the bounds of the boxes; the same boxes, counts and seed give the same queries. Ignores
+/// boxes that are infinite or extend beyond 1e7 m for the bounds; without any other box, the queries are around the
+/// origin.
+[[nodiscard]] QuerySet random_queries(std::span<const Aabb> boxes, const QueryCounts& counts, std::uint64_t seed);
 
 }  // namespace fase::cli

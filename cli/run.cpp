@@ -1,4 +1,4 @@
-/// The command `fase run`: simulates a scene, tells how it went, records it when asked.
+/// The command `fase run`: simulates a scene, prints a summary, and records the motion on request.
 #include "cli/run.hpp"
 
 #include <fmt/format.h>
@@ -10,11 +10,12 @@
 #include <utility>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/load_scene.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
-#include "cli/common/start.hpp"
+#include "cli/common/structure_choice.hpp"
 #include "cli/level/scene.hpp"
 #include "cli/run_summary.hpp"
 #include "cli/scene_look.hpp"
@@ -42,13 +43,13 @@ Result<std::uint64_t> steps_of(const RunOptions& options, float time_step) {
     if (steps > double(max_steps)) {
         return Error{Status::BadArgument,
                      "--seconds",
-                     fmt::format("found {:.0f} steps of {:.6g} s, need at most {}", steps, time_step, max_steps),
+                     fmt::format("found {:.0f} steps of {:.6g} s; expected at most {}", steps, time_step, max_steps),
                      {}};
     }
     return static_cast<std::uint64_t>(std::max(steps, 1.0));
 }
 
-/// A world filled from a scene, and what is to be done with it.
+/// A world filled from a scene, its output files and its summary.
 struct Run {
     World world;
     std::vector<BodyId> bodies;
@@ -57,7 +58,7 @@ struct Run {
     std::optional<record::WorldTrace> trace;
     RunSummary summary;
 
-    /// The world as it is now, to all files that are written.
+    /// Appends the current state of the world to all output files.
     Result<void> write_frame() {
         if (recorder) {
             if (auto added = recorder->add_frame(world); !added) return added;
@@ -69,22 +70,22 @@ struct Run {
     }
 };
 
-/// Whether the files that are to be written can be.
+/// Checks that the output files can be written.
 Result<void> check_outputs(const RunOptions& options) {
     for (const std::string* out : {&options.record, &options.trace}) {
         if (out->empty()) continue;
         if (auto writable = check_output(*out, options.scene); !writable) return writable;
     }
     if (!options.trace.empty() && options.trace == options.record)
-        return Error{Status::Io, options.trace, "found one file for --record and --trace, need two", {}};
+        return Error{Status::Io, options.trace, "found one file for --record and --trace; expected two", {}};
     return {};
 }
 
-/// The scene of the options; that of a level stands in `level`, too.
+/// Loads the scene of the options; for a WAD file, also fills `level`.
 Result<scene::Scene> load(const RunOptions& options, std::optional<LevelScene>& level) {
     if (!is_wad(options.scene)) {
         if (!options.map.empty())
-            return Error{Status::BadArgument, "--map", "found a scene that is no WAD, need one", {}};
+            return Error{Status::BadArgument, "--map", "found a scene that is not a WAD; expected a WAD", {}};
         return load_scene(options.scene, {options.count, options.seed});
     }
     Result<LevelScene> loaded = load_level_scene(options.scene, options.map, {options.count, options.seed});
@@ -98,7 +99,7 @@ Result<Run> prepare(const RunOptions& options) {
         if (auto structure = broad::AnyStructure::named(options.structure); !structure) {
             return Error{Status::BadArgument,
                          "--structure",
-                         fmt::format("found \"{}\", need auto or one of {}", printable(options.structure, 60),
+                         fmt::format("found \"{}\"; expected auto or one of {}", printable(options.structure, 60),
                                      broad::AnyStructure::names()),
                          {}};
         }
@@ -128,7 +129,7 @@ Result<Run> prepare(const RunOptions& options) {
     run.summary.threads = threads;
     const Result<std::uint64_t> steps = steps_of(options, run.world.settings().time_step);
     if (!steps) return steps.error();
-    run.summary.asked_steps = *steps;
+    run.summary.requested_steps = *steps;
     if (!options.record.empty()) {
         SceneLook look = look_of(*scene, *ids);
         if (look.head.title.empty()) look.head.title = printable(options.scene);
@@ -148,12 +149,12 @@ Result<Run> prepare(const RunOptions& options) {
     return run;
 }
 
-/// Steps until all is done or a signal comes.
+/// Runs all steps, or until a signal is received.
 Result<void> simulate(Run& run, ProgressForm form) {
     RunSummary& summary = run.summary;
-    Progress progress(form, "step", summary.asked_steps);
+    Progress progress(form, "step", summary.requested_steps);
     if (auto written = run.write_frame(); !written) return written;
-    for (std::uint64_t i = 0; i < summary.asked_steps && Interrupts::signal() == 0; ++i) {
+    for (std::uint64_t i = 0; i < summary.requested_steps && Interrupts::signal() == 0; ++i) {
         const Result<StepReport> report = run.world.step();
         if (!report) return report.error();
         summary.add(*report);
@@ -163,7 +164,7 @@ Result<void> simulate(Run& run, ProgressForm form) {
     return {};
 }
 
-/// Gives recording and trace their names, whatever came before, and says what is in them.
+/// Completes the recording and the trace, also after an error, and stores their sizes in the summary.
 Result<void> finish_files(Run& run) {
     Result<void> finished;
     if (run.recorder) {
@@ -204,37 +205,37 @@ int run_scene(const RunOptions& options) {
     return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
 }
 
-void add_run(CLI::App& app, Start& start) {
-    auto& run = start.options<RunOptions>();
-    CLI::App& command = *app.add_subcommand("run", "Simulate a scene; tell how it went; record it");
-    add_text(command, "SCENE", "A .gltf, .glb or .wad file, or a kind of 'fase generate'", run.scene)->required();
-    add_text(command, "--map", "Of a WAD: E1M1, MAP01 … (default: its first); bodies are thrown into it", run.map);
-    CLI::Option* seconds = add_positive_number(command, "--seconds", "Simulated time (default 10)", max_seconds,
-                                               [&run](double value) { run.seconds = value; });
-    add_whole_number(command, "--steps", "Steps, instead of seconds", 0, max_steps, run.steps)->excludes(seconds);
+void add_run(Command& program, CommandRegistry& registry) {
+    auto& run = registry.options<RunOptions>();
+    Command command = program.add_command("run", "Simulate a scene, print a summary, record it");
+    command.add_text("SCENE", "A .gltf, .glb or .wad file, or a kind of 'fase generate'", run.scene).required();
+    command.add_text("--map", "Of a WAD: E1M1, MAP01 … (default: its first); filled with bodies", run.map);
+    const Option seconds = command.add_positive_number("--seconds", "Simulated time (default 10)", max_seconds,
+                                                       [&run](double value) { run.seconds = value; });
+    command.add_whole_number("--steps", "Steps, instead of seconds", 0, max_steps, run.steps).excludes(seconds);
     add_structure(command, "Broad phase: auto (default), ", run.structure);
     add_threads(command, "0 (default): all cores; the result is the same for any", 0, run.threads);
-    add_positive_number(command, "--dt", "Seconds a step (default: the scene's, else 1/60)", 1,
-                        [&run](double value) { run.time_step = value; });
-    add_whole_number(command, "--sub-steps", "Solver's steps in a step (default: the scene's, else 4)", 1, 64,
-                     run.sub_steps);
-    command.add_flag("--no-sleep", run.keep_awake, "Nothing falls asleep");
-    add_count(command, "Of a kind or a WAD: bodies, roughly", run.count);
-    add_seed(command, "Of a kind or a WAD: another one of it", run.seed);
-    CLI::Option* record = add_text(command, "--record", "Write a recording for 'fase view'", run.record);
-    command.add_flag("--contacts", run.record_contacts, "Record all contact points too")->needs(record);
-    command.add_flag("--durable", run.durable, "Force each block of the recording to the disk (power loss)")
-        ->needs(record);
-    add_text(command, "--trace", "Write the colliders' boxes of each step for 'fase pairs' (.aabt)", run.trace);
+    command.add_positive_number("--dt", "Seconds per step (default: the scene's, else 1/60)", 1,
+                                [&run](double value) { run.time_step = value; });
+    command.add_whole_number("--sub-steps", "Sub-steps of the solver per step (default: the scene's, else 4)", 1, 64,
+                             run.sub_steps);
+    command.add_flag("--no-sleep", "No body falls asleep", run.keep_awake);
+    add_count(command, "Of a kind or a WAD: approximate number of bodies", run.count);
+    add_seed(command, "Of a kind or a WAD: seed of the random numbers (default 1)", run.seed);
+    const Option record = command.add_text("--record", "Write a recording for 'fase view'", run.record);
+    command.add_flag("--contacts", "Record all contact points too", run.record_contacts).needs(record);
+    command.add_flag("--durable", "Force each block of the recording to the disk (power loss)", run.durable)
+        .needs(record);
+    command.add_text("--trace", "Write the colliders' boxes of each step for 'fase pairs' (.aabt)", run.trace);
     add_json(command, run.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase run castle --seconds 12 --record castle.faserec\n"
         "  fase run scene.glb --steps 600 --threads 4 --json\n"
         "  fase run pile --count 500 --structure brute_force --trace pile.aabt\n"
         "  fase run freedoom1.wad --map E1M1 --count 300 --record e1m1.faserec\n"
-        "\nCtrl-C ends the run after the step in hand; what is recorded so far is kept.");
-    start.on(command, [&run] { return run_scene(run); });
+        "\nCtrl-C ends the run after the current step; the recording up to there is kept.");
+    registry.on(command, [&run] { return run_scene(run); });
 }
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// What a run was like, summed up over its steps.
+/// Summary of a run over all its steps.
 #include "cli/run_summary.hpp"
 
 #include <fmt/format.h>
@@ -45,11 +45,11 @@ void RunSummary::add(const StepReport& report) {
 void RunSummary::add_step_warnings() {
     if (quarantined > 0)
         warnings.push_back(
-            fmt::format("bodies taken out of play because their numbers became infinite ({} times)", quarantined));
+            fmt::format("bodies disabled because their state became NaN or infinite ({} times)", quarantined));
     if (pairs_dropped > 0)
-        warnings.push_back(fmt::format("pairs beyond the limit were dropped ({} times)", pairs_dropped));
+        warnings.push_back(fmt::format("pairs above the limit were dropped ({} times)", pairs_dropped));
     if (speed_clamped > 0)
-        warnings.push_back(fmt::format("bodies were held at the highest speed ({} times)", speed_clamped));
+        warnings.push_back(fmt::format("body speeds were clamped to the limit ({} times)", speed_clamped));
 }
 
 std::uint64_t peak_memory_bytes() {
@@ -92,10 +92,10 @@ std::string to_table(const RunSummary& s) {
     line("bodies", fmt::format("{}, {} of them dynamic, {} shapes", s.bodies, s.dynamic_bodies, s.shapes));
     if (s.joints > 0) line("joints", fmt::format("{}, not simulated yet", s.joints));
     line("steps", fmt::format("{}{}, {:.6g} s simulated", s.step_ms.size(),
-                              s.step_ms.size() < s.asked_steps ? fmt::format(" of {}", s.asked_steps) : "",
+                              s.step_ms.size() < s.requested_steps ? fmt::format(" of {}", s.requested_steps) : "",
                               s.simulated_seconds));
     if (!s.step_ms.empty()) {
-        line("ms a step",
+        line("ms/step",
              fmt::format("{:.3f} mean, {:.3f} median, {:.3f} worst, {} thread{}, {}", timing.mean, timing.median,
                          timing.worst, s.threads, s.threads == 1 ? "" : "s", s.last.structure));
         std::vector<std::string> stages;
@@ -103,11 +103,11 @@ std::string to_table(const RunSummary& s) {
             stages.push_back(fmt::format("{} {:.3f}", stage_names[i], stage_mean(s, i)));
         line("stages", fmt::format("{}  (mean ms)", fmt::join(stages, ", ")));
     }
-    line("contacts", fmt::format("{} at most, of {} points", s.peak_contacts, s.peak_points));
-    line("awake", fmt::format("{} at the end, {} at most", s.last.awake, s.peak_awake));
+    line("contacts", fmt::format("at most {}, with {} points", s.peak_contacts, s.peak_points));
+    line("awake", fmt::format("{} at the end, at most {}", s.last.awake, s.peak_awake));
     if (s.outside) line("outside", fmt::format("{} bodies at the end", *s.outside));
     line("memory",
-         fmt::format("{} at most, {} of them the world", bytes_text(peak_memory_bytes()), bytes_text(s.last.bytes)));
+         fmt::format("at most {}, {} of it the world", bytes_text(peak_memory_bytes()), bytes_text(s.last.bytes)));
     line("hash", hex(s.hash));
     if (!s.recording.empty()) {
         line("recording",

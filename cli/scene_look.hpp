@@ -1,5 +1,5 @@
 #pragma once
-/// How a scene looks, in the words of a recording.
+/// Converts the appearance of a scene to that of a recording.
 #include <span>
 #include <string>
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace fase::cli {
 
-/// What a recording should say of the scene beside what its world knows.
+/// What a recording contains of a scene in addition to its world.
 struct SceneLook {
     record::RecordingHead head;
-    std::vector<std::string> warnings;  ///< what of the picture could not be kept
+    std::vector<std::string> warnings;  ///< visuals that could not be converted
 };
 
-/// Meshes, names and colours of the scene. Scale and shear of visuals go into the meshes; what is seen but belongs to
-/// no body is drawn with the first static body that has a picture.
-/// @param ids of the scene's bodies, in their order, as scene::instantiate() gives them
+/// Converts meshes, names and colours. Scale and shear of visuals are applied to the meshes. Visuals without a body are
+/// attached to the first static body that has visuals.
+/// @param ids of the scene's bodies, in their order, from scene::instantiate()
 [[nodiscard]] SceneLook look_of(const scene::Scene& scene, std::span<const BodyId> ids);
 
 }  // namespace fase::cli

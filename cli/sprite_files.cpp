@@ -1,4 +1,4 @@
-/// Finds and reads the images that go into an atlas.
+/// Finds and reads the images of an atlas.
 #include "cli/sprite_files.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t max_pixels_together = std::int64_t{1} << 28;
+constexpr std::int64_t max_total_pixels = std::int64_t{1} << 28;
 constexpr std::size_t max_text = std::size_t{1} << 28;
 
 bool is_png(const fs::path& path) {
@@ -30,25 +30,25 @@ Error io_error(const fs::path& path, const std::error_code& why) {
     return {Status::Io, path.string(), "cannot read: " + why.message(), {}};
 }
 
-/// Whether `path` is below `folder`; both without links.
-bool lies_in(const fs::path& path, const fs::path& folder) {
+/// Whether `path` is below `folder`. Both must be free of links.
+bool is_below(const fs::path& path, const fs::path& folder) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
 Result<void> find_in_folder(const std::string& folder, std::vector<SpriteFile>& found) {
     std::error_code why;
-    const fs::path home = fs::canonical(folder, why);
+    const fs::path root = fs::canonical(folder, why);
     if (why) return io_error(folder, why);
     fs::recursive_directory_iterator at(folder, why), end;
     while (!why && at != end) {
         const fs::path path = at->path();
-        std::error_code no_matter;
-        if (is_png(path) && !at->is_directory(no_matter)) {
+        std::error_code ignored;
+        if (is_png(path) && !at->is_directory(ignored)) {
             const fs::path real = fs::canonical(path, why);
             if (why) return io_error(path, why);
-            if (!lies_in(real, home))
+            if (!is_below(real, root))
                 return Error{
-                    Status::Format, path.string(), "found a link that leaves the folder, need a file in it", {}};
+                    Status::Format, path.string(), "found a link that leaves the folder; expected a file in it", {}};
             found.push_back({path.string(), path.lexically_relative(folder).generic_string()});
         }
         at.increment(why);
@@ -57,7 +57,7 @@ Result<void> find_in_folder(const std::string& folder, std::vector<SpriteFile>& 
     return {};
 }
 
-/// Takes a whole number and the blanks before it off a line; false when there is none.
+/// Removes leading blanks and an integer from a line; false if there is none.
 bool take_number(std::string_view& line, int& number) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
@@ -71,12 +71,12 @@ bool take_number(std::string_view& line, int& number) {
 Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs) {
     std::vector<SpriteFile> found;
     for (const std::string& input : inputs) {
-        std::error_code no_matter;
-        if (fs::is_directory(input, no_matter)) {
+        std::error_code ignored;
+        if (fs::is_directory(input, ignored)) {
             const std::size_t before = found.size();
             if (auto searched = find_in_folder(input, found); !searched) return searched.error();
             if (found.size() == before)
-                return Error{Status::Format, input, "found no .png file in the folder, need some", {}};
+                return Error{Status::Format, input, "found no .png file in the folder; expected at least one", {}};
         } else {
             found.push_back({input, fs::path(input).filename().string()});
         }
@@ -87,8 +87,8 @@ Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (i > 0 && found[i].name == found[i - 1].name)
             return Error{Status::BadArgument, found[i].path,
-                         "found the name of " + found[i - 1].path + " again, need different ones",
-                         "give the folder that holds both"};
+                         "found the same name as " + found[i - 1].path + "; expected different names",
+                         "pass the folder that contains both"};
         if (const std::string_view problem = atlas::problem_of_name(found[i].name); !problem.empty())
             return Error{Status::BadArgument, found[i].path, std::string(problem), {}};
     }
@@ -102,11 +102,11 @@ Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> file
         Result<atlas::Image> image = atlas::read_png_file(file.path);
         if (!image) return image.error();
         pixels += area_of(image->size);
-        if (pixels > max_pixels_together)
+        if (pixels > max_total_pixels)
             return Error{
                 Status::Capacity, file.path,
-                fmt::format("found {} pixels in the images up to here, need at most {}", pixels, max_pixels_together),
-                "make several atlases"};
+                fmt::format("found {} pixels in the images up to here; expected at most {}", pixels, max_total_pixels),
+                "create several atlases"};
         sprites.push_back({file.name, *std::move(image)});
     }
     return sprites;
@@ -131,12 +131,12 @@ Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
             size.height > atlas::max_page_side)
             return Error{Status::Format,
                          fmt::format("{}:{}", path, number),
-                         fmt::format("found \"{}\", need a width and a height of 1 to {}", whole.substr(0, 60),
+                         fmt::format("found \"{}\"; expected a width and a height of 1 to {}", whole.substr(0, 60),
                                      atlas::max_page_side),
                          {}};
         sizes.push_back(size);
     }
-    if (sizes.empty()) return Error{Status::Format, path, "found no rectangles, need some", {}};
+    if (sizes.empty()) return Error{Status::Format, path, "found no rectangles; expected at least one", {}};
     return sizes;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds and reads the images that go into an atlas.
+/// Finds and reads the images of an atlas.
 #include <span>
 #include <string>
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace fase::cli {
 
-/// An image file, and what its sprite is called.
+/// An image file and the name of its sprite.
 struct SpriteFile {
     std::string path, name;
 };
 
-/// The PNG files that are named, and those in named folders and their folders, in the order of the names. A sprite of a
-/// folder is called by its way from there ("hero/run.png"), one that is named itself by its file's name. Refused: two
-/// of one name; a link that leads out of its folder; no files at all.
+/// Finds the PNG files among `inputs` and, recursively, in the folders among them, sorted by name. A sprite from a
+/// folder is named by its path relative to it ("hero/run.png"), a single file by its file name. Refused: two sprites of
+/// one name; a link that leads out of its folder; no files.
 [[nodiscard]] Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs);
 
-/// Reads them: at most 2^28 pixels together.
+/// Reads the files: at most 2^28 pixels in total.
 [[nodiscard]] Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> files);
 
-/// Rectangles of a text: width and height a line; empty lines do not count. `where` of an error is FILE:LINE.
+/// Reads rectangles from a text file: width and height per line; skips empty lines. `where` of an error is FILE:LINE.
 [[nodiscard]] Result<std::vector<atlas::Size>> read_rectangles(const std::string& path);
 
 }  // namespace fase::cli

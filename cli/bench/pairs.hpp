@@ -1,28 +1,25 @@
 #pragma once
-/// The command `fase bench pairs`: times how broad phases find the pairs of traces, beside those of other libraries.
+/// The command `fase bench pairs`: times how broad phases find the pairs of traces, Fase's and other libraries'.
 #include <string>
 
 #include "bench/pairs.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace fase::cli {
 
-class Start;
+class Command;
+class CommandRegistry;
 
 struct BenchPairsOptions : bench::PairBenchOptions {
-    std::string csv;    ///< rows are added to this table; empty: none
+    std::string csv;    ///< rows are appended to this CSV file; empty: none
     bool json = false;  ///< one JSON array on stdout instead of a table
 };
 
 /// Prints a row for each trace and engine. Returns the exit code: 0; 1 an engine found other pairs than the first one
-/// (its times are not shown); 2 an option or a trace cannot be meant; 3 a file cannot be read or written; 130 or 143
-/// when a signal ended it, after the rows of what was done.
+/// (its times are not shown); 2 an option or a trace is invalid; 3 a file cannot be read or written; 130 or 143 when a
+/// signal ended the run, after the rows that are finished.
 int run_bench_pairs(const BenchPairsOptions& options);
 
-/// Adds the command to the group `fase bench`.
-void add_bench_pairs(CLI::App& bench_group, Start& start);
+/// Adds the command to `group`, the command `fase bench`.
+void add_bench_pairs(Command& group, CommandRegistry& registry);
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// The command `fase bench step`: times whole steps of benchmark scenes, beside other engines.
+/// The command `fase bench step`: times complete steps of benchmark scenes, in Fase and in other engines.
 #include "cli/bench/step.hpp"
 
 #include <fmt/format.h>
@@ -11,10 +11,10 @@
 #include "bench/engine.hpp"
 #include "bench/table_file.hpp"
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
-#include "cli/common/start.hpp"
 #include "fase/scene/detail/json.hpp"
 
 namespace fase::cli {
@@ -22,7 +22,7 @@ namespace {
 
 template <class List> std::string names_of(const List& list) {
     std::string names;
-    for (const auto& one : list) names += (names.empty() ? "" : ", ") + std::string(one.name);
+    for (const auto& item : list) names += (names.empty() ? "" : ", ") + std::string(item.name);
     return names;
 }
 
@@ -36,7 +36,7 @@ std::string to_json(const std::vector<bench::StepRow>& rows) {
             "{{\"scene\": {}, \"engine\": {}, \"threads\": {}, \"steps\": {}, \"ms_per_step\": {{\"mean\": {:.6g}, "
             "\"median\": {:.6g}, \"worst\": {:.6g}, \"least\": {:.6g}}}, ",
             scene::quoted(row.scene), scene::quoted(row.engine), row.threads, row.steps, row.ms.mean, row.ms.median,
-            row.ms.worst, row.least);
+            row.ms.worst, row.min_ms);
         text += fmt::format(
             "\"bodies\": {}, \"contacts\": {}, \"hash\": {}, \"top_height\": {:.9g}, \"drift\": {:.9g}, ", row.bodies,
             row.contacts, row.hash ? scene::quoted(hash_text(row)) : "null", row.top_height, row.drift);
@@ -48,15 +48,15 @@ std::string to_json(const std::vector<bench::StepRow>& rows) {
     return text + "\n]\n";
 }
 
-/// How much longer than Fase an engine took on the scene, and how its pile compares; "" when Fase was not run.
-std::string beside_fase(const std::vector<bench::StepRow>& rows, const bench::StepRow& row) {
+/// The time and the heights of an engine relative to Fase on the same scene; "" when Fase was not run.
+std::string compared_with_fase(const std::vector<bench::StepRow>& rows, const bench::StepRow& row) {
     const auto fase = std::find_if(rows.begin(), rows.end(), [&](const bench::StepRow& other) {
         return other.engine == "fase" && other.scene == row.scene;
     });
-    if (fase == rows.end() || row.engine == "fase" || fase->ms.median <= 0 || fase->least <= 0) return {};
+    if (fase == rows.end() || row.engine == "fase" || fase->ms.median <= 0 || fase->min_ms <= 0) return {};
     return fmt::format(
-        "{:.2f} times the time of fase (by least times {:.2f}); top {:+.3f} m, mean height {:+.3f} m beside it",
-        row.ms.median / fase->ms.median, row.least / fase->least, row.top_height - fase->top_height,
+        "{:.2f} times the time of fase ({:.2f} by minimum times); relative to it: top {:+.3f} m, mean height {:+.3f} m",
+        row.ms.median / fase->ms.median, row.min_ms / fase->min_ms, row.top_height - fase->top_height,
         row.mean_height - fase->mean_height);
 }
 
@@ -64,9 +64,9 @@ std::string to_table(const std::vector<bench::StepRow>& rows) {
     std::string text;
     for (const bench::StepRow& row : rows) {
         text += fmt::format(
-            "{:<14} {:<7} {:8.3f} ms a step (rounds {:.3f} to {:.3f}; median {:.3f}, worst {:.3f}, least "
+            "{:<14} {:<7} {:8.3f} ms per step (rounds {:.3f} to {:.3f}; median {:.3f}, worst {:.3f}, min "
             "{:.3f})\n",
-            row.scene, row.engine, row.ms.mean, row.mean_low, row.mean_high, row.ms.median, row.ms.worst, row.least);
+            row.scene, row.engine, row.ms.mean, row.mean_low, row.mean_high, row.ms.median, row.ms.worst, row.min_ms);
         text += fmt::format(
             "{:22} {} steps, {} rounds, {} thread{}, {} bodies, {} contacts; top {:.3f} m, mean height {:.3f} m, "
             "drift {:.3f} m\n",
@@ -74,8 +74,8 @@ std::string to_table(const std::vector<bench::StepRow>& rows) {
             row.top_height, row.mean_height, row.drift);
         text += fmt::format("{:22} {}{}{}\n", "", row.settings, row.hash ? ", hash " + hash_text(row) : "",
                             row.repeats ? "" : ", rounds DIFFER");
-        const std::string beside = beside_fase(rows, row);
-        if (!beside.empty()) text += fmt::format("{:22} {}\n", "", beside);
+        const std::string comparison = compared_with_fase(rows, row);
+        if (!comparison.empty()) text += fmt::format("{:22} {}\n", "", comparison);
     }
     return text;
 }
@@ -97,7 +97,7 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
                          fmt::format("{:.4f}", row.ms.mean),
                          fmt::format("{:.4f}", row.ms.median),
                          fmt::format("{:.4f}", row.ms.worst),
-                         fmt::format("{:.4f}", row.least),
+                         fmt::format("{:.4f}", row.min_ms),
                          fmt::format("{:.4f}", row.mean_low),
                          fmt::format("{:.4f}", row.mean_high),
                          fmt::format("{}", row.bodies),
@@ -109,7 +109,7 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
     }
     static const std::vector<std::string> columns{
         "date",         "commit", "machine",  "scene",     "engine",     "settings",    "threads",
-        "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "min_ms",    "mean_ms_low",
+        "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "min_ms",      "mean_ms_low",
         "mean_ms_high", "bodies", "contacts", "hash",      "top_height", "mean_height", "drift"};
     return bench::append_to_table(file, columns, lines);
 }
@@ -128,18 +128,18 @@ int run_bench_step(const BenchStepOptions& options) {
     for (const bench::StepScene& scene : bench::step_scenes()) {
         if (options.scene.empty()) scenes.emplace_back(scene.name);
     }
-    // Scene by scene, so that what is measured is kept whatever comes.
+    // One scene at a time, so that finished rows are saved even if a later scene fails.
     for (std::size_t i = 0; i < scenes.size() && Interrupts::signal() == 0; ++i) {
-        bench::StepOptions one = options;
-        one.scene = scenes[i];
+        bench::StepOptions scene_options = options;
+        scene_options.scene = scenes[i];
         std::optional<Progress> progress;
-        const auto tell = [&](std::uint64_t done, std::uint64_t total, std::string_view scene,
-                              std::string_view engine) {
+        const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view scene,
+                                std::string_view engine) {
             if (!progress) progress.emplace(form, "step", total);
             if (progress->due()) progress->update(done, fmt::format("{} {}", scene, engine));
             return Interrupts::signal() == 0;
         };
-        const Result<std::vector<bench::StepRow>> measured = bench::measure_steps(one, tell);
+        const Result<std::vector<bench::StepRow>> measured = bench::measure_steps(scene_options, report);
         if (!measured) return refuse(measured.error());
         if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
         rows.insert(rows.end(), measured->begin(), measured->end());
@@ -152,25 +152,25 @@ int run_bench_step(const BenchStepOptions& options) {
     return all_repeat ? exit_ok : exit_check_failed;
 }
 
-void add_bench_step(CLI::App& bench_group, Start& start) {
-    auto& bench = start.options<BenchStepOptions>();
-    CLI::App& command = *bench_group.add_subcommand("step", "Time whole steps of benchmark scenes");
-    add_text(command, "--scene", "One of " + names_of(bench::step_scenes()) + " (default: all)", bench.scene);
-    add_text(command, "--engine", "all (default), or some of " + names_of(bench::engines()) + ", commas between",
-             bench.engine);
-    add_threads(command, "For engines that have threads (default 1)", 1, bench.threads);
-    add_whole_number(command, "--steps", "Steps (default: the scene's)", 1, 100000, bench.steps);
-    add_whole_number(command, "--rounds", "How often it is all done (default 3)", 1, 1000, bench.rounds);
+void add_bench_step(Command& group, CommandRegistry& registry) {
+    auto& bench = registry.options<BenchStepOptions>();
+    Command command = group.add_command("step", "Time complete steps of benchmark scenes");
+    command.add_text("--scene", "One of " + names_of(bench::step_scenes()) + " (default: all)", bench.scene);
+    command.add_text("--engine", "all (default), or a comma-separated list of: " + names_of(bench::engines()),
+                     bench.engine);
+    add_threads(command, "Threads, for engines that use them (default 1)", 1, bench.threads);
+    command.add_whole_number("--steps", "Steps (default: the scene's)", 1, 100000, bench.steps);
+    command.add_whole_number("--rounds", "Repetitions of the whole measurement (default 3)", 1, 1000, bench.rounds);
     add_count(command, "Bodies, roughly (default: the scene's)", bench.count);
-    add_text(command, "--csv", "Add the rows to this table", bench.csv);
+    command.add_text("--csv", "Append the rows to this CSV file", bench.csv);
     add_json(command, bench.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase bench step --scene large_pyramid\n"
         "  fase bench step --engine fase --threads 4 --json\n"
-        "\nEngines take turns in one run, a few steps each, so that a noisy machine is noisy for all.\n"
-        "Exit code 1: the rounds of an engine that is deterministic ended in different states.");
-    start.on(command, [&bench] { return run_bench_step(bench); });
+        "\nEngines alternate every few steps in one run, so that noise of the machine affects all of them.\n"
+        "Exit code 1: the rounds of a deterministic engine ended in different states.");
+    registry.on(command, [&bench] { return run_bench_step(bench); });
 }
 
 }  // namespace fase::cli

@@ -1,28 +1,25 @@
 #pragma once
-/// The command `fase bench step`: times whole steps of benchmark scenes, beside other engines.
+/// The command `fase bench step`: times complete steps of benchmark scenes, in Fase and in other engines.
 #include <string>
 
 #include "bench/step.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace fase::cli {
 
-class Start;
+class Command;
+class CommandRegistry;
 
 struct BenchStepOptions : bench::StepOptions {
-    std::string csv;    ///< rows are added to this table; empty: none
+    std::string csv;    ///< rows are appended to this CSV file; empty: none
     bool json = false;  ///< one JSON array on stdout instead of a table
 };
 
 /// Prints a row for each scene and engine. Returns the exit code: 0; 1 the rounds of an engine with a hash ended in
-/// different states; 2 an option cannot be meant; 3 the table cannot be written; 130 or 143 when a signal ended it,
-/// after the rows of the scenes that were done.
+/// different states; 2 an option is invalid; 3 the CSV file cannot be written; 130 or 143 when a signal ended the run,
+/// after the rows of the finished scenes.
 int run_bench_step(const BenchStepOptions& options);
 
-/// Adds the command to the group `fase bench`.
-void add_bench_step(CLI::App& bench_group, Start& start);
+/// Adds the command to `group`, the command `fase bench`.
+void add_bench_step(Command& group, CommandRegistry& registry);
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// The command `fase bench sudden`: the worst frames of broad phases when much changes at once.
+/// The command `fase bench sudden`: the worst frames of broad phases when many boxes change at the same time.
 #include "cli/bench/sudden.hpp"
 
 #include <fmt/format.h>
@@ -9,10 +9,10 @@
 
 #include "bench/table_file.hpp"
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
-#include "cli/common/start.hpp"
 #include "cli/common/table.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/scene/detail/json.hpp"
@@ -30,7 +30,7 @@ std::string to_json(const std::vector<SuddenRow>& rows) {
             "{:.6g}, \"ms\": {{\"mean\": {:.6g}, \"median\": {:.6g}, \"worst\": {:.6g}}}, \"worst_frame\": {}, "
             "\"pairs\": {}}}",
             text.size() == 1 ? "" : ",", scene::quoted(row.event), scene::quoted(row.structure), row.boxes, row.frames,
-            row.right, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.worst_frame, row.pairs);
+            row.correct, row.build_ms, row.ms.mean, row.ms.median, row.ms.worst, row.worst_frame, row.pairs);
     return text + "\n]\n";
 }
 
@@ -39,7 +39,7 @@ std::string to_table(const std::vector<SuddenRow>& rows) {
         {"event", "structure", "median ms", "mean ms", "worst ms", "in frame", "worst / mean", "build ms", "pairs"});
     std::string text;
     for (const SuddenRow& row : rows) {
-        if (!row.right) {
+        if (!row.correct) {
             table.add_note(row.event + " " + row.structure, "WRONG: other pairs than a plain sweep");
             continue;
         }
@@ -57,7 +57,7 @@ Result<void> save(const std::string& file, const std::vector<SuddenRow>& rows) {
     const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const SuddenRow& row : rows)
-        if (row.right)
+        if (row.correct)
             lines.push_back({origin.date, origin.commit, origin.machine, row.event, row.structure,
                              std::to_string(row.boxes), std::to_string(row.frames),
                              fmt::format("{:.4f}", row.ms.median), fmt::format("{:.4f}", row.ms.mean),
@@ -77,16 +77,16 @@ int run_bench_sudden(const BenchSuddenOptions& options) {
     }
     const Interrupts interrupts;
     std::optional<Progress> progress;
-    std::string begun;
-    const auto tell = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
-        if (begun != what) {
+    std::string current;
+    const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
+        if (current != what) {
             progress.emplace(progress_form(true), "frame", total);
-            begun = what;
+            current = what;
         }
         if (progress->due()) progress->update(done, what);
         return Interrupts::signal() == 0;
     };
-    const auto rows = bench::measure_sudden(options, tell);
+    const auto rows = bench::measure_sudden(options, report);
     progress.reset();
     if (!rows) return refuse(rows.error());
     if (!options.csv.empty()) {
@@ -95,27 +95,28 @@ int run_bench_sudden(const BenchSuddenOptions& options) {
     const std::string text = options.json ? to_json(*rows) : to_table(*rows);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
-    const bool all_right = std::all_of(rows->begin(), rows->end(), [](const SuddenRow& row) { return row.right; });
-    return all_right ? exit_ok : exit_check_failed;
+    const bool all_correct = std::all_of(rows->begin(), rows->end(), [](const SuddenRow& row) { return row.correct; });
+    return all_correct ? exit_ok : exit_check_failed;
 }
 
-void add_bench_sudden(CLI::App& bench_group, Start& start) {
-    auto& bench = start.options<BenchSuddenOptions>();
-    CLI::App& command = *bench_group.add_subcommand("sudden", "Time frames in which much changes at once");
-    add_text(command, "--structure",
-             "Some of auto, " + broad::AnyStructure::names() + ", commas between (default: " + bench.structures + ")",
-             bench.structures);
+void add_bench_sudden(Command& group, CommandRegistry& registry) {
+    auto& bench = registry.options<BenchSuddenOptions>();
+    Command command = group.add_command("sudden", "Time frames in which many boxes change");
+    command.add_text(
+        "--structure",
+        "Comma-separated list of: auto, " + broad::AnyStructure::names() + " (default: " + bench.structures + ")",
+        bench.structures);
     add_count(command, "Boxes (default 100,000)", bench.boxes);
-    add_whole_number(command, "--frames", "Frames of each event (default 60)", 2, 100000, bench.frames);
-    add_text(command, "--csv", "Add the rows to this table", bench.csv);
+    command.add_whole_number("--frames", "Frames of each event (default 60)", 2, 100000, bench.frames);
+    command.add_text("--csv", "Append the rows to this CSV file", bench.csv);
     add_json(command, bench.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase bench sudden\n"
         "  fase bench sudden --structure auto --count 1000000\n"
-        "\nA frame's time is what the processor works to take its boxes and to find all its pairs, with one thread.\n"
-        "Exit code 1: a structure found other pairs than a plain sweep did, in a frame in the middle or at the end.");
-    start.on(command, [&bench] { return run_bench_sudden(bench); });
+        "\nA frame's time is the processor time to update all boxes and to find all pairs, with one thread.\n"
+        "Exit code 1: a structure found other pairs than a plain sweep, in the middle frame or in the last one.");
+    registry.on(command, [&bench] { return run_bench_sudden(bench); });
 }
 
 }  // namespace fase::cli

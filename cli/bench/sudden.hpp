@@ -1,27 +1,24 @@
 #pragma once
-/// The command `fase bench sudden`: the worst frames of broad phases when much changes at once.
+/// The command `fase bench sudden`: the worst frames of broad phases when many boxes change at the same time.
 #include <string>
 
 #include "bench/sudden.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace fase::cli {
 
-class Start;
+class Command;
+class CommandRegistry;
 
 struct BenchSuddenOptions : bench::SuddenOptions {
-    std::string csv;    ///< rows are added to this table; empty: none
+    std::string csv;    ///< rows are appended to this CSV file; empty: none
     bool json = false;  ///< one JSON array on stdout instead of a table
 };
 
-/// Prints a row for each event and structure. Returns the exit code: 0; 1 a structure found other pairs than it should;
-/// 2 an option cannot be meant; 3 a file cannot be written; 130 or 143 when a signal ended it.
+/// Prints a row for each event and structure. Returns the exit code: 0; 1 a structure found wrong pairs; 2 an option is
+/// invalid; 3 a file cannot be written; 130 or 143 when a signal ended the run.
 int run_bench_sudden(const BenchSuddenOptions& options);
 
-/// Adds the command to the group `fase bench`.
-void add_bench_sudden(CLI::App& bench_group, Start& start);
+/// Adds the command to `group`, the command `fase bench`.
+void add_bench_sudden(Command& group, CommandRegistry& registry);
 
 }  // namespace fase::cli

@@ -1,53 +1,109 @@
 #pragma once
-/// Options that take only what they say: whole texts, whole numbers, in their range, once.
-#include <CLI/CLI.hpp>
+/// Declares the options of commands and parses the command line. Values are strict: complete texts, whole numbers, in
+/// range, each option once. Hides CLI11, which takes seconds to compile: only arguments.cpp includes it.
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace fase::cli {
 
-/// A whole number from `least` to `most`. Refused: empty, signs and blanks, "12abc", "1e3".
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, const std::string& what, std::uint64_t least,
-                              std::uint64_t most, const std::function<void(std::uint64_t)>& take);
+/// Handle of a declared option; valid while its CommandLine exists.
+class Option {
+public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+    /// Refuses a command line without this option.
+    void required();
+    /// Refuses this option without `other`.
+    void needs(Option other);
+    /// Refuses this option together with `other`.
+    void excludes(Option other);
 
-/// The same into `number`, which must be able to hold `most`.
-template <std::integral T>
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, const std::string& what, std::uint64_t least,
-                              std::uint64_t most, T& number) {
-    return add_whole_number(app, name, what, least, most,
-                            [&number](std::uint64_t value) { number = static_cast<T>(value); });
-}
-template <std::integral T>
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, const std::string& what, std::uint64_t least,
-                              std::uint64_t most, std::optional<T>& number) {
-    return add_whole_number(app, name, what, least, most,
-                            [&number](std::uint64_t value) { number = static_cast<T>(value); });
-}
+private:
+    CLI::Option* option_;
+};
 
-/// A decimal number above 0 and at most `most`. Refused: empty, "12abc", "1e999", "nan", hexadecimal.
-CLI::Option* add_positive_number(CLI::App& app, const std::string& name, const std::string& what, double most,
-                                 const std::function<void(double)>& take);
+/// Handle of a command; valid while its CommandLine exists. An option is named as in "-o,--output", a positional
+/// argument as in "FILE". `help` is its line in the help text.
+class Command {
+public:
+    explicit Command(CLI::App* app) : app_(app) {}
 
-/// A text that is not empty: a file or a name.
-CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& what, std::string& text);
+    /// Adds a command below this one.
+    Command add_command(const std::string& name, const std::string& help);
+    /// Refuses a command line that names no command below this one.
+    void require_command();
+    /// Sets the text at the end of the help.
+    void set_footer(const std::string& text);
+    /// Calls `action` once the command line is parsed, if it names this command.
+    void on_parsed(std::function<void()> action);
 
-// Options that several commands have; `what` where it differs from one to the other.
+    /// A text that is not empty: a file or a name.
+    Option add_text(const std::string& name, const std::string& help, std::string& text);
+    /// Any number of texts.
+    Option add_texts(const std::string& name, const std::string& help, std::vector<std::string>& texts);
+    /// An option without a value.
+    Option add_flag(const std::string& name, const std::string& help, bool& flag);
+    /// A decimal number above 0 and at most `max`. Refused: empty, "12abc", "1e999", "nan", hexadecimal.
+    Option add_positive_number(const std::string& name, const std::string& help, double max,
+                               const std::function<void(double)>& store);
+    /// A whole number from `min` to `max`. Refused: empty, signs and blanks, "12abc", "1e3".
+    Option add_whole_number(const std::string& name, const std::string& help, std::uint64_t min, std::uint64_t max,
+                            const std::function<void(std::uint64_t)>& store);
+    /// The same into `number`, whose type must be able to hold `max`.
+    template <std::integral T>
+    Option add_whole_number(const std::string& name, const std::string& help, std::uint64_t min, std::uint64_t max,
+                            T& number) {
+        return add_whole_number(name, help, min, max,
+                                [&number](std::uint64_t value) { number = static_cast<T>(value); });
+    }
+    template <std::integral T>
+    Option add_whole_number(const std::string& name, const std::string& help, std::uint64_t min, std::uint64_t max,
+                            std::optional<T>& number) {
+        return add_whole_number(name, help, min, max,
+                                [&number](std::uint64_t value) { number = static_cast<T>(value); });
+    }
 
-/// `--threads N`, `least` to 1024.
-CLI::Option* add_threads(CLI::App& app, const std::string& what, std::uint64_t least, int& threads);
-/// `--structure NAME`, with the names that there are at the end of `what`.
-CLI::Option* add_structure(CLI::App& app, const std::string& what, std::string& structure);
+private:
+    CLI::App* app_;
+};
+
+// Options that several commands share, with the same name and range. `help` may differ.
+
+/// `--threads N`, `min` to 1024.
+Option add_threads(Command& command, const std::string& help, std::uint64_t min, int& threads);
 /// `--count N`, 1 to 1,000,000.
-CLI::Option* add_count(CLI::App& app, const std::string& what, std::size_t& count);
-/// `--seed N`.
-CLI::Option* add_seed(CLI::App& app, const std::string& what, std::uint64_t& seed);
+Option add_count(Command& command, const std::string& help, std::size_t& count);
+/// `--seed N`, any 64-bit number.
+Option add_seed(Command& command, const std::string& help, std::uint64_t& seed);
 /// `--json`.
-CLI::Option* add_json(CLI::App& app, bool& json);
+Option add_json(Command& command, bool& json);
 
-/// Why a command line was refused: one line that names the option and where to find help. `app` is the whole program.
-[[nodiscard]] std::string usage_problem(const CLI::App& app, const CLI::ParseError& error);
+/// The command line of a program: declared options, then one call of parse().
+class CommandLine {
+public:
+    CommandLine(const std::string& program, const std::string& description, const std::string& version);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    /// The program itself; its commands are below it.
+    [[nodiscard]] Command root();
+    /// Parses the arguments and calls the action of the named command. nullopt: they are accepted. Otherwise the exit
+    /// code, after help or version were printed on stdout, or on stderr one line that names the refused option.
+    [[nodiscard]] std::optional<int> parse(int count, const char* const* arguments);
+
+private:
+    std::unique_ptr<CLI::App> app_;
+};
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// What there is to say of a file: names with texts, numbers, lists and counts.
+/// The facts that `fase info` prints about a file: named texts, numbers, lists and counts.
 #include "cli/common/facts.hpp"
 
 #include "cli/common/output.hpp"

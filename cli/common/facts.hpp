@@ -1,5 +1,5 @@
 #pragma once
-/// What there is to say of a file: names with texts, numbers, lists and counts.
+/// The facts that `fase info` prints about a file: named texts, numbers, lists and counts.
 #include <fmt/format.h>
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace fase::cli {
 
-/// Facts in the order in which they were added, printed as aligned lines or as one JSON object.
+/// Facts in the order of their addition, printed as aligned lines or as one JSON object.
 class Facts {
 public:
     using Counts = std::map<std::string, std::size_t>;
@@ -29,11 +29,11 @@ public:
     void add(std::string key, Counts counts) { entries_.push_back({std::move(key), std::move(counts)}); }
 
     [[nodiscard]] std::string json() const;
-    /// Harmless on a terminal; empty lists are left out.
+    /// Safe to print on a terminal; empty lists are omitted.
     [[nodiscard]] std::string lines() const;
 
 private:
-    /// A number or a truth value, which JSON has without quotes.
+    /// A number or a boolean: JSON writes these without quotes.
     struct Plain {
         std::string text;
     };

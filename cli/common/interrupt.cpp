@@ -1,4 +1,4 @@
-/// Ctrl-C and SIGTERM as a question that a loop asks, so that it can end with all it has done.
+/// Turns Ctrl-C and SIGTERM into a flag that a loop checks, so that it can stop and keep its results.
 #include "cli/common/interrupt.hpp"
 
 #include <signal.h>
@@ -11,24 +11,24 @@
 namespace fase::cli {
 namespace {
 
-/// A signal handler can reach nothing else.
-volatile sig_atomic_t came = 0;
+/// Global: a signal handler has no other access to state.
+volatile sig_atomic_t received = 0;
 
-constexpr timeval patience{0, 950000};
+constexpr timeval grace_period{0, 950000};
 
-extern "C" void note_signal(int number) {
-    if (came != 0) ::_exit(128 + came);
-    came = number;
+extern "C" void record_signal(int number) {
+    if (received != 0) ::_exit(128 + received);
+    received = number;
     const int before = errno;
-    const itimerval once{{0, 0}, patience};
+    const itimerval once{{0, 0}, grace_period};
     ::setitimer(ITIMER_REAL, &once, nullptr);
     errno = before;
 }
 
-extern "C" void lose_patience(int) {
-    constexpr char text[] = "\nfase: stopped in the middle of a step; what was flushed of a recording is kept\n";
-    if (::write(2, text, sizeof text - 1) < 0) ::_exit(128 + came);
-    ::_exit(128 + came);
+extern "C" void exit_after_grace_period(int) {
+    constexpr char text[] = "\nfase: stopped during a step; the flushed part of a recording is kept\n";
+    if (::write(2, text, sizeof text - 1) < 0) ::_exit(128 + received);
+    ::_exit(128 + received);
 }
 
 void handle(int number, void (*handler)(int)) {
@@ -44,10 +44,10 @@ void handle(int number, void (*handler)(int)) {
 }  // namespace
 
 Interrupts::Interrupts() {
-    came = 0;
-    handle(SIGALRM, lose_patience);
-    handle(SIGINT, note_signal);
-    handle(SIGTERM, note_signal);
+    received = 0;
+    handle(SIGALRM, exit_after_grace_period);
+    handle(SIGINT, record_signal);
+    handle(SIGTERM, record_signal);
 }
 
 Interrupts::~Interrupts() {
@@ -56,6 +56,6 @@ Interrupts::~Interrupts() {
     for (const int number : {SIGINT, SIGTERM, SIGALRM}) handle(number, SIG_DFL);
 }
 
-int Interrupts::signal() { return came; }
+int Interrupts::signal() { return received; }
 
 }  // namespace fase::cli

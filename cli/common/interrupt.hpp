@@ -1,17 +1,18 @@
 #pragma once
-/// Ctrl-C and SIGTERM as a question that a loop asks, so that it can end with all it has done.
+/// Turns Ctrl-C and SIGTERM into a flag that a loop checks, so that it can stop and keep its results.
 
 namespace fase::cli {
 
-/// While it lives, the first SIGINT or SIGTERM is only noted; a second one, or 0.95 s without an end, ends the program
-/// at once with 128 + signal. A signal that was ignored when the program began stays so. At most one lives at a time.
+/// While an object exists, the first SIGINT or SIGTERM is only recorded. A second one, or 0.95 s until the destructor
+/// runs, ends the program immediately with 128 + signal. A signal that was ignored at program start stays ignored. At
+/// most one object may exist at a time.
 class Interrupts {
 public:
     Interrupts();
     ~Interrupts();
     Interrupts(const Interrupts&) = delete;
     Interrupts& operator=(const Interrupts&) = delete;
-    /// The signal that came; 0: none.
+    /// The signal that was received; 0: none.
     [[nodiscard]] static int signal();
 };
 

@@ -1,4 +1,4 @@
-/// Scenes and boxes by the names that people give on the command line.
+/// Loads scenes and boxes by the names of the command line: files or generated kinds.
 #include "cli/common/load_scene.hpp"
 
 #include <sys/stat.h>
@@ -16,8 +16,8 @@ namespace fase::cli {
 namespace {
 
 bool exists(const std::string& path) {
-    struct stat there {};
-    return ::stat(path.c_str(), &there) == 0;
+    struct stat info {};
+    return ::stat(path.c_str(), &info) == 0;
 }
 
 bool is_trace(const std::string& path) {
@@ -40,10 +40,8 @@ Result<scene::Scene> load_scene(const std::string& name, const scene::GenerateOp
         if (kind.name == name) return scene::generate(kind.name, options);
         kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
     }
-    return Error{Status::Io,
-                 printable(name, 200),
-                 "found no such file, need a .gltf, .glb or .wad file, or one of " + kinds,
-                 {}};
+    return Error{
+        Status::Io, printable(name, 200), "no such file; expected a .gltf, .glb or .wad file, or one of " + kinds, {}};
 }
 
 Result<std::vector<Aabb>> load_boxes(const std::string& name) {
@@ -67,13 +65,14 @@ Result<std::vector<Aabb>> load_boxes(const std::string& name) {
     for (const BodyId id : *bodies) {
         const Result<BodyState> body = world->body(id);
         if (!body) return body.error();
-        for (const ColliderId one : world->colliders_of(id)) {
-            const Result<ColliderState> collider = world->collider(one);
+        for (const ColliderId collider_id : world->colliders_of(id)) {
+            const Result<ColliderState> collider = world->collider(collider_id);
             if (!collider) return collider.error();
             boxes.push_back(bounds(*collider->shape, body->pose * collider->def.pose));
         }
     }
-    if (boxes.empty()) return Error{Status::BadArgument, name, "found a scene without colliders, need one to ask", {}};
+    if (boxes.empty())
+        return Error{Status::BadArgument, name, "found a scene without colliders; expected at least one", {}};
     return boxes;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes and boxes by the names that people give on the command line.
+/// Loads scenes and boxes by the names of the command line: files or generated kinds.
 #include <string>
 #include <vector>
 
@@ -9,12 +9,12 @@
 
 namespace fase::cli {
 
-/// The glTF file of that name, or the first map of a WAD with bodies in it; where there is no file, the scene that
-/// scene::generate() makes of a kind of that name. Io when it is neither.
+/// Loads a glTF file, or the first map of a WAD file filled with bodies. If no such file exists, generates the scene
+/// kind of that name (scene::generate()). Io when it is neither.
 Result<scene::Scene> load_scene(const std::string& name, const scene::GenerateOptions& options = {});
 
-/// The boxes of a trace's first frame, or the exact ones of the colliders of a scene, as load_scene() finds it, in its
-/// beginning. BadArgument for a scene without colliders.
+/// The boxes of a trace's first frame, or the exact bounds of all colliders of a scene (see load_scene()) in its
+/// initial state. BadArgument for a scene without colliders.
 Result<std::vector<Aabb>> load_boxes(const std::string& name);
 
 }  // namespace fase::cli

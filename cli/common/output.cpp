@@ -1,5 +1,4 @@
-/// What every command shares in talking to the outside: exit codes, error lines, text that is safe to show, output
-/// files.
+/// Output that all commands share: exit codes, error lines, text that is safe to print, checks of output files.
 #include "cli/common/output.hpp"
 
 #include <fcntl.h>
@@ -17,7 +16,7 @@
 namespace fase::cli {
 namespace {
 
-/// Bytes of the well-formed UTF-8 sequence of a printable character that `text` begins with; else 0 (RFC 3629).
+/// Byte length of the printable character at the start of `text`; 0: none, or invalid UTF-8 (RFC 3629).
 std::size_t printable_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = byte(0);
@@ -31,9 +30,9 @@ std::size_t printable_length(std::string_view text) {
     }
     const bool overlong = code < (length == 2 ? 0x80u : length == 3 ? 0x800u : 0x10000u);
     const bool control = code < 0xa0 || code == 0x2028 || code == 0x2029;
-    const bool turns_direction = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-    const bool none = code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
-    return overlong || control || turns_direction || none ? 0 : length;
+    const bool changes_direction = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+    const bool invalid = code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
+    return overlong || control || changes_direction || invalid ? 0 : length;
 }
 
 Error cannot_write(const std::string& path, std::string problem) { return {Status::Io, path, std::move(problem), {}}; }
@@ -56,10 +55,10 @@ int exit_code(Status status) {
     return exit_bug;
 }
 
-std::string printable(std::string_view text, std::size_t most) {
+std::string printable(std::string_view text, std::size_t max_bytes) {
     std::string out;
     std::size_t i = 0;
-    while (i < text.size() && i < most) {
+    while (i < text.size() && i < max_bytes) {
         const std::size_t length = printable_length(text.substr(i));
         if (length > 0) {
             out += text.substr(i, length);
@@ -84,7 +83,7 @@ int refuse(const Error& error) {
 
 void guard_standard_streams() {
     for (const int stream : {0, 1, 2}) {
-        // The lowest free number is given out, so the gaps fill in order.
+        // open() returns the lowest free descriptor, so the gaps fill in order.
         if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
             (void)::open("/dev/null", stream == 0 ? O_RDONLY : O_WRONLY);
     }
@@ -97,39 +96,40 @@ int finish_output(int code) {
     if (!failed) return code;
     const int cause = errno;
     pollfd out{1, POLLOUT, 0};
-    const bool nobody_reads = cause == EPIPE || (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0);
-    if (nobody_reads) return 128 + SIGPIPE;
-    const int told = refuse({Status::Io,
-                             "standard output",
-                             std::string("cannot write: ") + (cause != 0 ? std::strerror(cause) : "it failed"),
-                             {}});
-    return code == exit_ok ? told : code;
+    const bool reader_closed = cause == EPIPE || (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0);
+    if (reader_closed) return 128 + SIGPIPE;
+    const int io_code = refuse({Status::Io,
+                                "standard output",
+                                std::string("cannot write: ") + (cause != 0 ? std::strerror(cause) : "unknown error"),
+                                {}});
+    return code == exit_ok ? io_code : code;
 }
 
 Result<void> check_output(const std::string& path, const std::string& input) {
-    if (path.empty()) return Error{Status::BadArgument, "output", "found an empty name, need a file", {}};
-    struct stat there {};
-    if (::stat(path.c_str(), &there) == 0) {
-        if (S_ISDIR(there.st_mode)) return cannot_write(path, "found a folder, need a file to write");
+    if (path.empty()) return Error{Status::BadArgument, "output", "found an empty name; expected a file", {}};
+    struct stat info {};
+    if (::stat(path.c_str(), &info) == 0) {
+        if (S_ISDIR(info.st_mode)) return cannot_write(path, "found a folder; expected a file to write");
         struct stat source {};
-        if (!input.empty() && ::stat(input.c_str(), &source) == 0 && source.st_dev == there.st_dev &&
-            source.st_ino == there.st_ino) {
-            return cannot_write(path, "found the file that is read, need another one to write");
+        if (!input.empty() && ::stat(input.c_str(), &source) == 0 && source.st_dev == info.st_dev &&
+            source.st_ino == info.st_ino) {
+            return cannot_write(path, "found the input file; expected another file to write");
         }
-        if (::access(path.c_str(), W_OK) != 0) return cannot_write(path, "found a read-only file, need one to write");
-        if (!S_ISREG(there.st_mode)) return {};
+        if (::access(path.c_str(), W_OK) != 0)
+            return cannot_write(path, "found a read-only file; expected a writable one");
+        if (!S_ISREG(info.st_mode)) return {};
     } else if (errno == ENAMETOOLONG || errno == ELOOP) {
         return cannot_write(printable(path, 60), std::string("cannot write: ") + std::strerror(errno));
     }
     const std::size_t slash = path.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    struct stat place {};
-    if (::stat(folder.c_str(), &place) != 0 || !S_ISDIR(place.st_mode)) {
-        return cannot_write(path, "found no folder \"" + folder + "\", need one that exists");
+    struct stat folder_info {};
+    if (::stat(folder.c_str(), &folder_info) != 0 || !S_ISDIR(folder_info.st_mode)) {
+        return cannot_write(path, "found no folder \"" + folder + "\"; expected an existing one");
     }
-    if (path.back() == '/') return cannot_write(path, "found a folder's name, need a file's");
+    if (path.back() == '/') return cannot_write(path, "found a folder's name; expected a file's");
     if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-        return cannot_write(path, "found the read-only folder \"" + folder + "\", need one to write to");
+        return cannot_write(path, "found the read-only folder \"" + folder + "\"; expected a writable one");
     }
     return {};
 }

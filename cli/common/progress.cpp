@@ -1,4 +1,4 @@
-/// How far a long command has come: a bar on a terminal, now and then a line elsewhere.
+/// Progress of a long command: a bar on a terminal, a line from time to time elsewhere.
 #include "cli/common/progress.hpp"
 
 #include <fmt/format.h>
@@ -13,10 +13,10 @@
 namespace fase::cli {
 namespace {
 
-constexpr auto between_bars = std::chrono::milliseconds(100);
-constexpr auto between_lines = std::chrono::seconds(2);
+constexpr auto bar_interval = std::chrono::milliseconds(100);
+constexpr auto line_interval = std::chrono::seconds(2);
 
-void put(const std::string& text) {
+void write_to_stderr(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
 }
@@ -36,11 +36,11 @@ ProgressForm progress_form(bool results_only) {
 
 Progress::Progress(ProgressForm form, std::string_view unit, std::uint64_t total)
     : form_(form), unit_(unit), total_(std::max<std::uint64_t>(total, 1)), begin_(Clock::now()) {
-    next_ = begin_ + (form == ProgressForm::Bar ? Clock::duration(between_bars) : Clock::duration(between_lines));
+    next_ = begin_ + (form == ProgressForm::Bar ? Clock::duration(bar_interval) : Clock::duration(line_interval));
 }
 
 Progress::~Progress() {
-    if (drawn_) put("\r\x1b[K");
+    if (drawn_) write_to_stderr("\r\x1b[K");
 }
 
 bool Progress::due() const { return form_ != ProgressForm::None && Clock::now() >= next_; }
@@ -50,12 +50,12 @@ void Progress::update(std::uint64_t done, std::string_view note) {
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - begin_).count();
     if (form_ == ProgressForm::Bar) {
-        next_ = now + between_bars;
+        next_ = now + bar_interval;
         draw_bar(done, note, seconds);
     } else {
-        next_ = now + between_lines;
-        put(fmt::format("{} {} of {} after {:.0f} s{}{}\n", unit_, done, total_, seconds, note.empty() ? "" : ", ",
-                        note));
+        next_ = now + line_interval;
+        write_to_stderr(fmt::format("{} {} of {} after {:.0f} s{}{}\n", unit_, done, total_, seconds,
+                                    note.empty() ? "" : ", ", note));
     }
 }
 
@@ -67,8 +67,8 @@ void Progress::draw_bar(std::uint64_t done, std::string_view note, double second
                                    100 * part, unit_, done, total_);
     if (!note.empty()) line += fmt::format("  {}", note);
     if (done > 0) line += fmt::format("  {:.0f} s left", seconds / part * (1 - part));
-    if (line.size() >= terminal_width()) line.resize(terminal_width() - 1);  // ASCII only, so any cut is good
-    put("\r" + line + "\x1b[K");
+    if (line.size() >= terminal_width()) line.resize(terminal_width() - 1);  // ASCII only, so it can be cut anywhere
+    write_to_stderr("\r" + line + "\x1b[K");
     drawn_ = true;
 }
 

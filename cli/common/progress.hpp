@@ -1,5 +1,5 @@
 #pragma once
-/// How far a long command has come: a bar on a terminal, now and then a line elsewhere.
+/// Progress of a long command: a bar on a terminal, a line from time to time elsewhere.
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -7,27 +7,27 @@
 
 namespace fase::cli {
 
-/// Where progress goes.
+/// How progress is shown.
 enum class ProgressForm {
     None,
     Bar,    ///< redrawn in place, up to 10 times a second
     Lines,  ///< one every 2 s, for logs
 };
-/// Bar when stderr is a terminal; else lines, or nothing when only results are wanted.
+/// Bar when stderr is a terminal; otherwise lines, or nothing if `results_only`.
 [[nodiscard]] ProgressForm progress_form(bool results_only);
 
-/// Shows progress on stderr. Cheap enough to be told of every step.
+/// Shows progress on stderr. update() is cheap enough to call in every step.
 class Progress {
 public:
-    /// @param total what `done` of update() counts up to; above 0
+    /// @param total the final value of `done` in update(); above 0
     Progress(ProgressForm form, std::string_view unit, std::uint64_t total);
-    /// Takes the bar off the screen.
+    /// Clears the bar from the screen.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    /// @param note a few words on what is going on
+    /// @param note a few words about the current work
     void update(std::uint64_t done, std::string_view note);
-    /// Whether update() would show anything now: asks before a note is written.
+    /// Whether update() would show anything now. Check it before you format a note.
     [[nodiscard]] bool due() const;
 
 private:

@@ -1,4 +1,4 @@
-/// What `--structure` of the measuring commands can mean: one, the automatic choice, or all.
+/// The option `--structure`: one structure, the automatic choice, or all.
 #include "cli/common/structure_choice.hpp"
 
 #include <fmt/format.h>
@@ -7,11 +7,15 @@
 
 namespace fase::cli {
 
+Option add_structure(Command& command, const std::string& help, std::string& structure) {
+    return command.add_text("--structure", help + broad::AnyStructure::names(), structure);
+}
+
 Result<std::vector<StructureChoice>> structures_named(const std::string& option) {
     std::vector<StructureChoice> choices;
-    const auto add = [&](const std::string& asked, broad::AnyStructure empty) {
+    const auto add = [&](const std::string& requested, broad::AnyStructure empty) {
         const std::string chosen(empty.info().name);
-        choices.push_back({asked, chosen, std::move(empty)});
+        choices.push_back({requested, chosen, std::move(empty)});
     };
     if (option == "auto") {
         add(option, {});
@@ -25,7 +29,7 @@ Result<std::vector<StructureChoice>> structures_named(const std::string& option)
     } else {
         return Error{Status::BadArgument,
                      "--structure",
-                     fmt::format("found \"{}\", need auto, all or one of {}", printable(option, 60),
+                     fmt::format("found \"{}\"; expected auto, all or one of {}", printable(option, 60),
                                  broad::AnyStructure::names()),
                      {}};
     }

@@ -1,21 +1,26 @@
 #pragma once
-/// What `--structure` of the measuring commands can mean: one, the automatic choice, or all.
+/// The option `--structure`: one structure, the automatic choice, or all.
 #include <string>
 #include <vector>
 
+#include "cli/common/arguments.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/core/result.hpp"
 
 namespace fase::cli {
 
-/// One structure that is to be measured.
+/// Adds `--structure NAME`; all names of structures follow `help` in the help text.
+Option add_structure(Command& command, const std::string& help, std::string& structure);
+
+/// A structure to measure.
 struct StructureChoice {
-    std::string asked;   ///< a structure's name, or "auto"
-    std::string chosen;  ///< the name of the structure that it is
+    std::string requested;  ///< a structure's name, or "auto"
+    std::string chosen;     ///< the name of the structure that is used
     broad::AnyStructure empty;
 };
 
-/// "auto", "all" (each of the registry, in its order) or a name. BadArgument with all names for anything else.
+/// The structures that `option` names: "auto", "all" (the registry, in its order) or one name. BadArgument for anything
+/// else; its message lists all names.
 Result<std::vector<StructureChoice>> structures_named(const std::string& option);
 
 }  // namespace fase::cli

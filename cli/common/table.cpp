@@ -1,4 +1,4 @@
-/// Aligned columns for people.
+/// Text tables with aligned columns.
 #include "cli/common/table.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ std::string Table::text() const {
         for (std::size_t i = 0; i < line.cells.size(); ++i)
             text += i == 0 ? fmt::format("{:<{}}", line.cells[i], widths[i])
                            : fmt::format("  {:>{}}", line.cells[i], widths[i]);
-        if (!line.words.empty()) text += "  " + line.words;
+        if (!line.note.empty()) text += "  " + line.note;
         text += '\n';
     }
     return text;

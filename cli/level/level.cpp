@@ -1,4 +1,4 @@
-/// The command `fase level`: compiles maps of WAD files, measures, draws and writes them.
+/// The command `fase level`: compiles maps of WAD files; measures, draws and writes them.
 #include "cli/level/level.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "cli/level/mesh.hpp"
 #include "cli/level/report.hpp"
 #include "cli/level/sight.hpp"
@@ -30,13 +30,13 @@ using level::LevelBsp;
 using level::Map;
 using level::Wad;
 
-/// The options, understood.
-struct Wish {
+/// The options after parsing and checking.
+struct ParsedOptions {
     level::CompileOptions compile;
     level::LumpOptions lumps;
     std::optional<level::BspLumps> read;
     std::optional<level::Point> point;
-    SightWish sight;
+    SightOptions sight;
 };
 
 std::optional<double> number_in(std::string_view text) {
@@ -47,27 +47,27 @@ std::optional<double> number_in(std::string_view text) {
 }
 
 Error bad_option(const char* option, const std::string& found, std::string_view need) {
-    return {Status::BadArgument, option, fmt::format("found \"{}\", need {}", printable(found, 60), need), {}};
+    return {Status::BadArgument, option, fmt::format("found \"{}\"; expected {}", printable(found, 60), need), {}};
 }
 
-Result<Wish> wish_of(const LevelCommand& command) {
-    Wish wish;
-    wish.lumps = {command.extended, command.gl};
+Result<ParsedOptions> parse_options(const LevelCommand& command) {
+    ParsedOptions options;
+    options.lumps = {command.extended, command.gl};
     if (!command.weight.empty()) {
         const auto weight = number_in(command.weight);
         if (!weight || !(*weight >= 0 && *weight <= 1000))
             return bad_option("--weight", command.weight, "a number from 0 to 1000");
-        wish.compile.split_weight = *weight;
+        options.compile.split_weight = *weight;
     }
     if (command.effort == "quick") {
-        wish.compile.effort = level::Effort::Quick;
+        options.compile.effort = level::Effort::Quick;
     } else if (command.effort == "thorough") {
-        wish.compile.effort = level::Effort::Thorough;
+        options.compile.effort = level::Effort::Thorough;
     } else if (!command.effort.empty() && command.effort != "normal") {
         return bad_option("--effort", command.effort, "quick, normal or thorough");
     }
     if (command.lumps == "nodes" || command.lumps == "gl") {
-        wish.read = command.lumps == "gl" ? level::BspLumps::Gl : level::BspLumps::Nodes;
+        options.read = command.lumps == "gl" ? level::BspLumps::Gl : level::BspLumps::Nodes;
     } else if (!command.lumps.empty()) {
         return bad_option("--lumps", command.lumps, "nodes or gl");
     }
@@ -76,29 +76,31 @@ Result<Wish> wish_of(const LevelCommand& command) {
         const auto x = number_in(std::string_view(command.point).substr(0, comma));
         const auto y =
             comma == std::string::npos ? std::nullopt : number_in(std::string_view(command.point).substr(comma + 1));
-        constexpr double most = 65536;
-        if (!x || !y || !(*x >= -most && *x <= most && *y >= -most && *y <= most))
+        constexpr double limit = 65536;
+        if (!x || !y || !(*x >= -limit && *x <= limit && *y >= -limit && *y <= limit))
             return bad_option("--point", command.point, "X,Y, two numbers from -65536 to 65536");
-        wish.point = level::Point{*x, *y};
+        options.point = level::Point{*x, *y};
     }
     if (command.rays > 0 && !command.pvs)
-        return Error{Status::BadArgument, "--rays", "found no visible sets to hold against, need --pvs", {}};
-    wish.sight = {wish.point, command.pvs, command.heights ? level::Heights::Counted : level::Heights::Ignored,
-                  command.rays};
+        return Error{
+            Status::BadArgument, "--rays", "found no --pvs; expected it with --rays, which check the visible sets", {}};
+    options.sight = {options.point, command.pvs, command.heights ? level::Heights::Counted : level::Heights::Ignored,
+                     command.rays};
     const bool one_map = !command.svg.empty() || !command.png.empty() || !command.point.empty();
-    if (command.all && !command.map.empty()) return bad_option("--all", command.map, "no MAP beside it");
+    if (command.all && !command.map.empty()) return bad_option("--all", command.map, "no MAP with it");
     if (command.all && one_map)
-        return Error{Status::BadArgument, "--all", "found a plan or a point beside it, need one MAP for these", {}};
-    if (wish.read && !command.output.empty())
-        return Error{Status::BadArgument, "--lumps", "found an output beside it, need one or the other", {}};
-    return wish;
+        return Error{
+            Status::BadArgument, "--all", "found --svg, --png or --point with it; expected a single MAP for these", {}};
+    if (options.read && !command.output.empty())
+        return Error{Status::BadArgument, "--lumps", "found --output with it; expected one of the two", {}};
+    return options;
 }
 
-/// The maps that are asked for, by their markers.
+/// The markers of the requested maps.
 Result<std::vector<std::size_t>> markers_of(const LevelCommand& command, const Wad& wad) {
     std::vector<std::size_t> markers = wad.map_markers();
     if (markers.empty())
-        return Error{Status::Format, command.file, "found no map in it, need THINGS and LINEDEFS behind a marker", {}};
+        return Error{Status::Format, command.file, "found no map; expected THINGS and LINEDEFS after a marker", {}};
     if (command.all || (command.map.empty() && markers.size() == 1)) return markers;
     if (!command.map.empty()) {
         if (const auto marker = wad.find_map(command.map)) return std::vector{*marker};
@@ -107,13 +109,13 @@ Result<std::vector<std::size_t>> markers_of(const LevelCommand& command, const W
     for (const std::size_t m : markers) known += (known.empty() ? "" : ", ") + printable(wad.lumps[m].name);
     return Error{Status::BadArgument, command.file,
                  command.map.empty()
-                     ? fmt::format("found {} maps, need the name of one of {}", markers.size(), known)
-                     : fmt::format("found no map \"{}\", need one of {}", printable(command.map, 40), known),
+                     ? fmt::format("found {} maps; expected the name of one of {}", markers.size(), known)
+                     : fmt::format("no map \"{}\"; expected one of {}", printable(command.map, 40), known),
                  command.map.empty() ? "or --all" : ""};
 }
 
-/// One map, from its lumps to its tree.
-struct Work {
+/// One map: its marker, its compiled tree, its figures.
+struct MapJob {
     std::size_t marker = 0;
     std::optional<Map> map;
     std::optional<LevelBsp> bsp;
@@ -121,61 +123,61 @@ struct Work {
     std::optional<Error> error;
 };
 
-void compile(const LevelCommand& command, const Wish& wish, const Wad& wad, TaskRunner& tasks, Work& work) {
+void compile(const LevelCommand& command, const ParsedOptions& options, const Wad& wad, TaskRunner& tasks,
+             MapJob& job) {
     const auto since = [](auto start) {
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     };
-    Result<Map> map = level::read_map(command.file, wad, wad.lumps[work.marker].name);
+    Result<Map> map = level::read_map(command.file, wad, wad.lumps[job.marker].name);
     if (!map) {
-        work.error = map.error();
+        job.error = map.error();
         return;
     }
-    work.map = std::move(*map);
+    job.map = std::move(*map);
     const auto start = std::chrono::steady_clock::now();
-    Result<LevelBsp> bsp = wish.read ? level::read_bsp(command.file, wad, work.marker, *work.map, *wish.read)
-                                     : level::compile(*work.map, wish.compile);
+    Result<LevelBsp> bsp = options.read ? level::read_bsp(command.file, wad, job.marker, *job.map, *options.read)
+                                        : level::compile(*job.map, options.compile);
     if (!bsp) {
-        work.error = bsp.error();
-        if (!wish.read) work.error->where = fmt::format("{}: {} {}", command.file, work.map->name, work.error->where);
+        job.error = bsp.error();
+        if (!options.read) job.error->where = fmt::format("{}: {} {}", command.file, job.map->name, job.error->where);
         return;
     }
-    work.row.ms = since(start);
-    work.bsp = std::move(*bsp);
-    work.row.map = work.map->name;
-    work.row.stats = work.bsp->stats;
-    work.row.nodes = work.bsp->nodes.size();
-    work.row.sub_sectors = work.bsp->sub_sectors.size();
-    if (command.check || command.stats) work.row.check = level::check_bsp(*work.map, *work.bsp);
-    if (wish.point) work.row.place = place_of(*work.map, *work.bsp, *wish.point);
-    if (wish.point || command.pvs) {
-        Result<SightReport> sight = look_around(*work.map, *work.bsp, wish.sight, tasks);
+    job.row.ms = since(start);
+    job.bsp = std::move(*bsp);
+    job.row.map = job.map->name;
+    job.row.stats = job.bsp->stats;
+    job.row.nodes = job.bsp->nodes.size();
+    job.row.sub_sectors = job.bsp->sub_sectors.size();
+    if (command.check || command.stats) job.row.check = level::check_bsp(*job.map, *job.bsp);
+    if (options.point) job.row.place = place_of(*job.map, *job.bsp, *options.point);
+    if (options.point || command.pvs) {
+        Result<SightReport> sight = look_around(*job.map, *job.bsp, options.sight, tasks);
         if (!sight) {
-            work.error = sight.error();
+            job.error = sight.error();
             return;
         }
-        work.row.sight = *std::move(sight);
+        job.row.sight = *std::move(sight);
     }
-    if (command.all) work.map->things.clear();
+    if (command.all) job.map->things.clear();
 }
 
-Result<void> draw(const LevelCommand& command, const Wish& wish, const Work& work) {
-    level::PlanLook look;
-    look.title = work.row.map;
-    look.note =
-        fmt::format("{} lines, {} segs (+{:.1f} %), {} nodes, {} sub-sectors, depth {:.1f} mean, {} worst",
-                    work.row.stats.lines, work.row.stats.wall_segs, 100 * share_of_splits(work.row.stats),
-                    work.row.nodes, work.row.sub_sectors, work.row.stats.mean_depth, work.row.stats.worst_depth);
-    look.eye = wish.point;
-    if (work.row.sight) {
-        look.seen = work.row.sight->from_cell;
-        if (const auto& seen = work.row.sight->from_point) {
+Result<void> draw(const LevelCommand& command, const ParsedOptions& options, const MapJob& job) {
+    level::PlanOptions look;
+    look.title = job.row.map;
+    look.note = fmt::format("{} lines, {} segs (+{:.1f} %), {} nodes, {} sub-sectors, depth {:.1f} mean, {} worst",
+                            job.row.stats.lines, job.row.stats.wall_segs, 100 * share_of_splits(job.row.stats),
+                            job.row.nodes, job.row.sub_sectors, job.row.stats.mean_depth, job.row.stats.worst_depth);
+    look.eye = options.point;
+    if (job.row.sight) {
+        look.seen = job.row.sight->from_cell;
+        if (const auto& seen = job.row.sight->from_point) {
             if (!command.pvs) look.seen = seen->sub_sectors;
             for (std::size_t i = 0, first = 0; i < seen->part_ends.size(); first = seen->part_ends[i++])
                 look.sight.emplace_back(seen->corners.begin() + static_cast<std::ptrdiff_t>(first),
                                         seen->corners.begin() + static_cast<std::ptrdiff_t>(seen->part_ends[i]));
         }
     }
-    const level::Drawing drawing = level::draw_plan(*work.map, *work.bsp, look);
+    const level::Drawing drawing = level::draw_plan(*job.map, *job.bsp, look);
     if (!command.svg.empty()) {
         const std::string svg = level::svg_of(drawing);
         if (auto written = write_file(command.svg, std::as_bytes(std::span(svg))); !written) return written;
@@ -189,19 +191,20 @@ Result<void> draw(const LevelCommand& command, const Wish& wish, const Work& wor
     return png ? write_file(command.png, *png) : png.error();
 }
 
-Result<void> write_wad(const LevelCommand& command, const Wish& wish, Wad& wad, const std::vector<Work>& works) {
-    for (std::size_t i = works.size(); i-- > 0;) {  // from behind, for lumps may be added
-        if (!works[i].bsp) continue;
-        auto written = level::write_bsp(wad, works[i].marker, command.file, *works[i].map, *works[i].bsp, wish.lumps);
+Result<void> write_wad(const LevelCommand& command, const ParsedOptions& options, Wad& wad,
+                       const std::vector<MapJob>& jobs) {
+    for (std::size_t i = jobs.size(); i-- > 0;) {  // last map first: lumps may be added
+        if (!jobs[i].bsp) continue;
+        auto written = level::write_bsp(wad, jobs[i].marker, command.file, *jobs[i].map, *jobs[i].bsp, options.lumps);
         if (!written) return written;
     }
-    const auto bytes = wad.packed();
+    const auto bytes = wad.to_bytes();
     return bytes ? write_file(command.output, *bytes) : bytes.error();
 }
 
-Result<int> work_on(const LevelCommand& command) {
-    const Result<Wish> wish = wish_of(command);
-    if (!wish) return wish.error();
+Result<int> compile_maps(const LevelCommand& command) {
+    const Result<ParsedOptions> options = parse_options(command);
+    if (!options) return options.error();
     for (const std::string* file : {&command.output, &command.svg, &command.png})
         if (!file->empty())
             if (auto writable = check_output(*file, command.file); !writable) return writable.error();
@@ -211,28 +214,28 @@ Result<int> work_on(const LevelCommand& command) {
     if (!markers) return markers.error();
 
     const auto start = std::chrono::steady_clock::now();
-    std::vector<Work> works(markers->size());
-    for (std::size_t i = 0; i < works.size(); ++i) works[i].marker = (*markers)[i];
+    std::vector<MapJob> jobs(markers->size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].marker = (*markers)[i];
     const auto tasks = make_thread_runner(command.threads);
-    tasks->run(works.size(), [&](std::size_t i) {
+    tasks->run(jobs.size(), [&](std::size_t i) {
         const StandardFloats floats;
-        compile(command, *wish, *wad, *tasks, works[i]);
+        compile(command, *options, *wad, *tasks, jobs[i]);
     });
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     std::vector<LevelRow> rows;
-    for (Work& work : works) {
-        if (work.error && !(command.all && work.error->status == Status::Unsupported)) return *work.error;
-        if (work.error) {
-            work.row.map = wad->lumps[work.marker].name;
-            work.row.note = work.error->problem;
+    for (MapJob& job : jobs) {
+        if (job.error && !(command.all && job.error->status == Status::Unsupported)) return *job.error;
+        if (job.error) {
+            job.row.map = wad->lumps[job.marker].name;
+            job.row.note = job.error->problem;
         }
-        rows.push_back(work.row);
+        rows.push_back(job.row);
     }
-    if (auto drawn = command.svg.empty() && command.png.empty() ? Result<void>{} : draw(command, *wish, works[0]);
+    if (auto drawn = command.svg.empty() && command.png.empty() ? Result<void>{} : draw(command, *options, jobs[0]);
         !drawn)
         return drawn.error();
     if (!command.output.empty())
-        if (auto written = write_wad(command, *wish, *wad, works); !written) return written.error();
+        if (auto written = write_wad(command, *options, *wad, jobs); !written) return written.error();
     const std::string text = command.json ? to_json(rows, command.all) : to_text(rows, command.all, ms);
     std::fwrite(text.data(), 1, text.size(), stdout);
     const bool hidden = std::any_of(rows.begin(), rows.end(),
@@ -240,23 +243,23 @@ Result<int> work_on(const LevelCommand& command) {
     return hidden || (command.check && !all_good(rows)) ? exit_check_failed : exit_ok;
 }
 
-/// What of the command there is for meshes.
+/// The command for a mesh; refuses options that only maps have.
 int run_mesh(const LevelCommand& command) {
-    const std::pair<const char*, bool> no_mesh[] = {{"MAP", !command.map.empty()},
-                                                    {"--all", command.all},
-                                                    {"--output", !command.output.empty()},
-                                                    {"--svg", !command.svg.empty()},
-                                                    {"--png", !command.png.empty()},
-                                                    {"--weight", !command.weight.empty()},
-                                                    {"--effort", !command.effort.empty()},
-                                                    {"--lumps", !command.lumps.empty()},
-                                                    {"--gl", command.gl},
-                                                    {"--extended", command.extended},
-                                                    {"--pvs", command.pvs},
-                                                    {"--heights", command.heights},
-                                                    {"--check", command.check}};
-    for (const auto& [option, given] : no_mesh)
-        if (given) return refuse({Status::BadArgument, option, "found a mesh, need a WAD", {}});
+    const std::pair<const char*, bool> wad_only[] = {{"MAP", !command.map.empty()},
+                                                     {"--all", command.all},
+                                                     {"--output", !command.output.empty()},
+                                                     {"--svg", !command.svg.empty()},
+                                                     {"--png", !command.png.empty()},
+                                                     {"--weight", !command.weight.empty()},
+                                                     {"--effort", !command.effort.empty()},
+                                                     {"--lumps", !command.lumps.empty()},
+                                                     {"--gl", command.gl},
+                                                     {"--extended", command.extended},
+                                                     {"--pvs", command.pvs},
+                                                     {"--heights", command.heights},
+                                                     {"--check", command.check}};
+    for (const auto& [option, given] : wad_only)
+        if (given) return refuse({Status::BadArgument, option, "found a mesh; expected a WAD", {}});
     return run_level_mesh({command.file, command.point, command.rays, command.threads, command.json});
 }
 
@@ -265,43 +268,43 @@ int run_mesh(const LevelCommand& command) {
 int run_level(const LevelCommand& command) {
     try {
         if (is_mesh_name(command.file)) return run_mesh(command);
-        const Result<int> code = work_on(command);
+        const Result<int> code = compile_maps(command);
         return code ? *code : refuse(code.error());
     } catch (const std::bad_alloc&) {
-        return refuse({Status::NoMemory, command.file, "found too little memory for its maps", {}});
+        return refuse({Status::NoMemory, command.file, "found too little memory for the maps", {}});
     }
 }
 
-void add_level(CLI::App& app, Start& start) {
-    auto& options = start.options<LevelCommand>();
-    CLI::App& command = *app.add_subcommand("level", "Compile a level of a Doom WAD into a BSP tree");
-    add_text(command, "FILE", "A .wad file; or a mesh (.obj, .gltf, .glb), for a tree of planes over its triangles",
-             options.file)
-        ->required();
-    add_text(command, "MAP", "E1M1, MAP01 …; may be left out when the file has one", options.map);
-    command.add_flag("--all", options.all, "Every map of the file");
-    add_text(command, "-o,--output", "Write the WAD with the new trees", options.output);
-    command.add_flag("--gl", options.gl, "Write GL nodes too");
-    command.add_flag("--extended", options.extended, "Write nodes of 32 bits (XNOD, and with --gl XGLN)");
-    add_text(command, "--weight", "Price of a cut, from 0 (even trees) on; default 1", options.weight);
-    add_text(command, "--effort", "quick, normal (default) or thorough", options.effort);
-    add_text(command, "--svg", "Draw the plan", options.svg);
-    add_text(command, "--png", "Draw the plan as pixels", options.png);
-    add_text(
-        command, "--point",
-        "X,Y: tell the sub-sector and sector there and what they see; lit on the plan. Of a mesh X,Y,Z: is it solid?",
-        options.point);
-    add_text(command, "--lumps", "nodes or gl: read the tree that is in the file instead of making one", options.lumps);
-    command.add_flag("--pvs", options.pvs, "Find what sub-sectors see of each other");
-    command.add_flag("--heights", options.heights, "Floors, ceilings and closed doors hide, too");
-    add_whole_number(command, "--rays", "With --pvs, or of a mesh: cast rays at random, and check what they meet", 1,
-                     100'000'000, options.rays);
-    command.add_flag("--stats", options.stats, "Tell more: minisegs, areas, how exact all is");
-    command.add_flag("--check", options.check,
-                     "Hold the tree against the map: sub-sectors convex, lines covered, areas");
-    add_threads(command, "Maps compiled at once (default: as many as there are cores)", 1, options.threads);
+void add_level(Command& program, CommandRegistry& registry) {
+    auto& options = registry.options<LevelCommand>();
+    Command command = program.add_command("level", "Compile a level of a Doom WAD into a BSP tree");
+    command
+        .add_text("FILE", "A .wad file; or a mesh (.obj, .gltf, .glb), for a BSP tree of its triangles", options.file)
+        .required();
+    command.add_text("MAP", "E1M1, MAP01 …; optional if the file has one map", options.map);
+    command.add_flag("--all", "Every map of the file", options.all);
+    command.add_text("-o,--output", "Write the WAD with the new trees", options.output);
+    command.add_flag("--gl", "Write GL nodes too", options.gl);
+    command.add_flag("--extended", "Write 32-bit nodes (XNOD, and with --gl XGLN)", options.extended);
+    command.add_text("--weight", "Cost of a split, from 0 (balanced trees); default 1", options.weight);
+    command.add_text("--effort", "quick, normal (default) or thorough", options.effort);
+    command.add_text("--svg", "Draw the plan", options.svg);
+    command.add_text("--png", "Draw the plan as an image", options.png);
+    command.add_text("--point",
+                     "X,Y: print the sub-sector and sector there and what is visible, also on the plan. For a mesh "
+                     "X,Y,Z: is it solid?",
+                     options.point);
+    command.add_text("--lumps", "nodes or gl: read the tree of the file instead of compiling one", options.lumps);
+    command.add_flag("--pvs", "Compute which sub-sectors are visible from each other", options.pvs);
+    command.add_flag("--heights", "Floors, ceilings and closed doors occlude, too", options.heights);
+    command.add_whole_number("--rays", "With --pvs, or for a mesh: cast random rays and check what they hit", 1,
+                             100'000'000, options.rays);
+    command.add_flag("--stats", "Print more: minisegs, areas, accuracy", options.stats);
+    command.add_flag("--check", "Check the tree against the map: convex sub-sectors, covered lines, areas",
+                     options.check);
+    add_threads(command, "Maps compiled in parallel (default: all cores)", 1, options.threads);
     add_json(command, options.json);
-    command.footer(
+    command.set_footer(
         "\nExamples:\n"
         "  fase level freedoom1.wad E1M1 --svg e1m1.svg --stats\n"
         "  fase level freedoom2.wad --all -o compiled.wad --gl\n"
@@ -309,10 +312,11 @@ void add_level(CLI::App& app, Start& start) {
         "  fase level compiled.wad MAP01 --lumps gl --check\n"
         "  fase level freedoom1.wad E1M1 --pvs --rays 1000000 --point 1056,-3616 --svg seen.svg\n"
         "  fase level house.obj --rays 100000\n"
-        "\nSegs are counted as in the classic lumps; splits are segs less sides of lines. Depth: nodes above a\n"
-        "sub-sector. The time is that of compiling, without reading and writing.\n"
-        "Exit code 1: --check found a tree that is not what it should be, or rays prove something wrong.");
-    start.on(command, [&options] { return run_level(options); });
+        "\nSegs are counted as in the classic lumps; splits are segs minus sides of lines. Depth is the number of "
+        "nodes\n"
+        "above a sub-sector. The time is the compile time, without reading and writing.\n"
+        "Exit code 1: --check found a wrong tree, or rays show an error.");
+    registry.on(command, [&options] { return run_level(options); });
 }
 
 }  // namespace fase::cli

@@ -1,4 +1,4 @@
-/// The tree of planes over a mesh, for the command `fase level`.
+/// The BSP tree of a mesh, for the command `fase level`.
 #include "cli/level/mesh.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ bool ends_with(const std::string& text, std::string_view ending) {
         [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b); });
 }
 
-/// All that a glTF scene shows, in its place.
+/// All visible triangles of a glTF scene, in world coordinates.
 TriangleMesh mesh_of(const scene::Scene& scene) {
     TriangleMesh all;
     const auto add = [&](const scene::Visual& visual, const Pose& body) {
@@ -39,10 +39,10 @@ TriangleMesh mesh_of(const scene::Scene& scene) {
             const Vec3 in_body = visual.linear * p + visual.position;
             all.positions.push_back(to_float(body.position + to_double(rotate(body.rotation, in_body))));
         }
-        const bool turned = determinant(visual.linear) < 0;
+        const bool flipped = determinant(visual.linear) < 0;
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
             const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-            all.indices.insert(all.indices.end(), {first + a, first + (turned ? c : b), first + (turned ? b : c)});
+            all.indices.insert(all.indices.end(), {first + a, first + (flipped ? c : b), first + (flipped ? b : c)});
         }
     };
     for (const scene::Body& body : scene.bodies)
@@ -69,7 +69,7 @@ Result<std::optional<Vec3d>> point_of(const std::string& text) {
         if (!good || !(std::abs(point[axis]) <= 1e9)) {
             return Error{Status::BadArgument,
                          "--point",
-                         fmt::format("found \"{}\", need X,Y,Z, three numbers within 1e9", printable(text, 60)),
+                         fmt::format("found \"{}\"; expected X,Y,Z, three numbers within 1e9", printable(text, 60)),
                          {}};
         }
         at = stop + 1;
@@ -77,46 +77,46 @@ Result<std::optional<Vec3d>> point_of(const std::string& text) {
     return std::optional(point);
 }
 
-/// Rays through the tree, all at once, and how many of them meet something else than the judge says.
-struct Rays {
-    std::uint64_t cast = 0, met = 0, checked = 0, wrong = 0;
+/// Results of rays through the tree, and of their check against the reference (all triangles).
+struct RayResults {
+    std::uint64_t cast = 0, hits = 0, checked = 0, wrong = 0;
     double ms = 0;
 };
 
-Rays cast_rays(const level::PolygonBsp& tree, std::uint64_t count, TaskRunner& tasks) {
-    constexpr std::uint64_t max_tests = 400'000'000;  // triangles that the judge may ask
+RayResults cast_rays(const level::PolygonBsp& tree, std::uint64_t count, TaskRunner& tasks) {
+    constexpr std::uint64_t max_tests = 400'000'000;  // limit of ray-triangle tests by the reference
     Vec3d lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
     for (const std::uint32_t i : tree.mesh().indices) {
         lo = min(lo, to_double(tree.mesh().positions[i]));
         hi = max(hi, to_double(tree.mesh().positions[i]));
     }
-    const Vec3d more = (hi - lo) * 0.1;
+    const Vec3d margin = (hi - lo) * 0.1;
     std::vector<Ray> rays(count);
     Random random(1);
-    const auto place = [&] {
-        const Vec3d p = lo - more, q = hi + more;
+    const auto random_point = [&] {
+        const Vec3d p = lo - margin, q = hi + margin;
         return Vec3d{p.x + (q.x - p.x) * double(random.unit()), p.y + (q.y - p.y) * double(random.unit()),
                      p.z + (q.z - p.z) * double(random.unit())};
     };
     for (Ray& ray : rays) {
-        ray.origin = place();
-        ray.direction = normalized(to_float(place() - ray.origin));
+        ray.origin = random_point();
+        ray.direction = normalized(to_float(random_point() - ray.origin));
     }
     std::vector<std::optional<level::PolygonHit>> hits(count);
     const auto start = std::chrono::steady_clock::now();
     parallel_ranges(tasks, count, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = tree.cast_ray(rays[i]);
     });
-    Rays result;
+    RayResults result;
     result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     result.cast = count;
-    for (const auto& hit : hits) result.met += hit ? 1 : 0;
+    for (const auto& hit : hits) result.hits += hit ? 1 : 0;
     result.checked = std::min<std::uint64_t>(count, std::max<std::uint64_t>(1, max_tests / tree.stats().triangles));
     std::atomic<std::uint64_t> wrong = 0;
     parallel_ranges(tasks, result.checked, 64, [&](std::size_t begin, std::size_t end) {
         std::uint64_t sum = 0;
         for (std::size_t i = begin; i < end; ++i)
-            sum += hits[i] != level::cast_ray_at_all(tree.mesh(), rays[i]) ? 1 : 0;
+            sum += hits[i] != level::cast_ray_brute_force(tree.mesh(), rays[i]) ? 1 : 0;
         wrong += sum;
     });
     result.wrong = wrong;
@@ -129,10 +129,10 @@ std::string text_of(const level::PolygonBspStats& s, double ms) {
         "depth {:.2f} mean, {} worst; {} bytes; {:.1f} ms; {}\n",
         s.triangles, s.dropped, s.pieces, s.splits, s.nodes, s.leaves, s.solid, s.empty,
         s.mixed == 0 ? "" : fmt::format(", {} mixed", s.mixed), s.mean_depth, s.worst_depth, s.bytes, ms,
-        s.closed ? "closed" : "not closed: solid is what the mesh goes around more than half");
+        s.closed ? "closed" : "not closed: a point is solid if its winding number is above one half");
 }
 
-Result<int> work_on(const LevelMeshCommand& command) {
+Result<int> build_tree(const LevelMeshCommand& command) {
     const Result<std::optional<Vec3d>> point = point_of(command.point);
     if (!point) return point.error();
     Result<TriangleMesh> mesh = read_mesh(command.file);
@@ -147,7 +147,7 @@ Result<int> work_on(const LevelMeshCommand& command) {
         return error;
     }
     const level::PolygonBspStats& s = tree->stats();
-    std::optional<Rays> rays;
+    std::optional<RayResults> rays;
     if (command.rays > 0) rays = cast_rays(*tree, command.rays, *tasks);
     std::string text;
     if (command.json) {
@@ -157,20 +157,20 @@ Result<int> work_on(const LevelMeshCommand& command) {
             "\"closed\": {}, \"bytes\": {}, \"ms\": {:.3f}",
             scene::quoted(command.file), s.triangles, s.dropped, s.pieces, s.splits, s.nodes, s.leaves, s.solid,
             s.empty, s.mixed, s.mean_depth, s.worst_depth, s.closed, s.bytes, ms);
-        if (*point) text += fmt::format(", \"point_solid\": {}", tree->solid(**point));
+        if (*point) text += fmt::format(", \"point_solid\": {}", tree->is_solid(**point));
         if (rays)
             text +=
                 fmt::format(", \"rays\": {{\"cast\": {}, \"met\": {}, \"checked\": {}, \"wrong\": {}, \"ms\": {:.3f}}}",
-                            rays->cast, rays->met, rays->checked, rays->wrong, rays->ms);
+                            rays->cast, rays->hits, rays->checked, rays->wrong, rays->ms);
         text += "}\n";
     } else {
         text = text_of(s, ms);
         if (*point)
             text += fmt::format("({:g}, {:g}, {:g}) is {}\n", (*point)->x, (*point)->y, (*point)->z,
-                                tree->solid(**point) ? "solid" : "empty");
+                                tree->is_solid(**point) ? "solid" : "empty");
         if (rays)
-            text += fmt::format("{} rays, {} met something, {:.1f} ms; {} held against all triangles: {} wrong\n",
-                                rays->cast, rays->met, rays->ms, rays->checked, rays->wrong);
+            text += fmt::format("{} rays, {} hits, {:.1f} ms; {} checked against all triangles: {} wrong\n", rays->cast,
+                                rays->hits, rays->ms, rays->checked, rays->wrong);
     }
     std::fwrite(text.data(), 1, text.size(), stdout);
     return rays && rays->wrong > 0 ? exit_check_failed : exit_ok;
@@ -183,7 +183,7 @@ bool is_mesh_name(const std::string& file) {
 }
 
 int run_level_mesh(const LevelMeshCommand& command) {
-    const Result<int> code = work_on(command);
+    const Result<int> code = build_tree(command);
     return code ? *code : refuse(code.error());
 }
 

@@ -1,4 +1,4 @@
-/// What `fase level` tells of maps.
+/// The output of `fase level` for maps.
 #include "cli/level/report.hpp"
 
 #include <fmt/format.h>
@@ -40,9 +40,9 @@ std::string json_of(const LevelRow& row) {
 std::string text_of_check(const LevelRow& row) {
     const level::BspCheck& c = *row.check;
     return fmt::format(
-        "  {}: walls stick out of sub-sectors by {:.2g} units, of nodes by {:.2g}, of boxes by {:.2g}\n"
+        "  {}: walls protrude from sub-sectors by {:.2g} units, from nodes by {:.2g}, from boxes by {:.2g}\n"
         "  lines: {:.3g} units not covered, {:.3g} covered twice; areas of sectors within {:.2g} (worst: sector {}){}\n"
-        "  {} sub-sectors with walls of several sectors, {} openings into nowhere\n",
+        "  {} sub-sectors with walls of several sectors, {} openings to no sub-sector\n",
         is_good(row) ? "right" : "WRONG", c.bulge, c.outside_node, c.outside_box, c.gaps, c.overlaps, c.area_error,
         c.worst_sector, c.open_sectors == 0 ? "" : fmt::format(", {} sectors not closed", c.open_sectors), c.mixed,
         c.openings);
@@ -92,7 +92,7 @@ double share_of_splits(const level::BspStats& stats) {
 bool is_good(const LevelRow& row) {
     if (!row.check) return true;
     const level::BspCheck& c = *row.check;
-    const bool rounded = c.bulge > 1e-3;  // cut points of the file are whole numbers
+    const bool rounded = c.bulge > 1e-3;  // split points in the file are integers
     return c.bulge <= 2 && c.outside_node <= 2 && c.outside_box <= 2 && c.open_loops == 0 && c.wrong_partners == 0 &&
            (rounded || c.area_error <= 1e-4);
 }
@@ -137,10 +137,11 @@ std::string to_text(const std::vector<LevelRow>& rows, bool all, double ms) {
     sum.map = "all";
     sum.stats.mean_depth = sum.sub_sectors == 0 ? 0 : depth / static_cast<double>(sum.sub_sectors);
     add(sum, "");
-    std::string sights;
+    std::string visibility;
     for (const LevelRow& row : rows)
-        if (row.sight) sights += printable(row.map) + "\n" + to_text(*row.sight);
-    return table.text() + sights + fmt::format("{} map{} in {:.0f} ms\n", rows.size(), rows.size() == 1 ? "" : "s", ms);
+        if (row.sight) visibility += printable(row.map) + "\n" + to_text(*row.sight);
+    return table.text() + visibility +
+           fmt::format("{} map{} in {:.0f} ms\n", rows.size(), rows.size() == 1 ? "" : "s", ms);
 }
 
 }  // namespace fase::cli

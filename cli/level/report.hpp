@@ -1,5 +1,5 @@
 #pragma once
-/// What `fase level` tells of maps.
+/// The output of `fase level` for maps.
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace fase::cli {
 
-/// Where a point of the plan is.
+/// The sub-sector and the sector at a point of the plan.
 struct PlanPlace {
     level::Point point;
     std::uint32_t sub_sector = 0, sector = 0;
     int floor = 0, ceiling = 0;
-    bool inside = false;  ///< of the sub-sector, not beyond its walls
+    bool inside = false;  ///< whether the point is inside the sub-sector, not behind its walls
 };
 [[nodiscard]] PlanPlace place_of(const level::Map& map, const level::LevelBsp& bsp, level::Point point);
 
-/// One map.
+/// The figures of one map.
 struct LevelRow {
-    std::string map, note;  ///< note: why it was left out
+    std::string map, note;  ///< note: why the map was skipped
     level::BspStats stats;
     std::size_t nodes = 0, sub_sectors = 0;
     double ms = 0;
@@ -29,16 +29,16 @@ struct LevelRow {
     std::optional<SightReport> sight;
 };
 
-/// Splits as a share of the sides.
+/// Splits divided by sides.
 [[nodiscard]] double share_of_splits(const level::BspStats& stats);
-/// Whether a tree is right: what is measured stays within what its lumps round (one unit), areas within 1e-4 when its
-/// cut points are not rounded to whole units.
+/// Whether a tree is correct: the measured errors are within the rounding of its lumps (one unit), and areas within
+/// 1e-4 unless its split points are rounded to whole units.
 [[nodiscard]] bool is_good(const LevelRow& row);
 [[nodiscard]] bool all_good(const std::vector<LevelRow>& rows);
 
-/// An object of one map, a list of all.
+/// One JSON object, or with `all` a list of the objects of all maps.
 [[nodiscard]] std::string to_json(const std::vector<LevelRow>& rows, bool all);
-/// Lines of one map, a table of all with their sum. @param ms time of all together
+/// Lines for one map, or with `all` a table of all maps and their sum. @param ms total time
 [[nodiscard]] std::string to_text(const std::vector<LevelRow>& rows, bool all, double ms);
 
 }  // namespace fase::cli

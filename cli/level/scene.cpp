@@ -1,4 +1,4 @@
-/// A level of a WAD as a scene: solid, with bodies thrown into it.
+/// Builds a scene from a level of a WAD file: static solids, and dynamic bodies in its rooms.
 #include "cli/level/scene.hpp"
 
 #include <fmt/format.h>
@@ -18,20 +18,20 @@ namespace fase::cli {
 namespace {
 
 constexpr std::size_t max_bodies = 100'000;
-constexpr float reach = 0.42f;      // metres: no body is larger around its centre
-constexpr int tries_for_each = 40;  // places that are looked at for one body
+constexpr float max_radius = 0.42f;  // metres: bound of every body around its centre
+constexpr int tries_per_body = 40;   // random positions
 
-/// Places that are taken, in cells of twice the reach.
-class Taken {
+/// Occupied positions, in a hash grid with cells of twice the maximum radius.
+class OccupiedPlaces {
 public:
-    /// False when another is too near.
-    bool take(Vec3d p) {
-        const double size = 2 * reach;
+    /// Adds a position; false if another one is too near.
+    bool try_insert(Vec3d p) {
+        const double size = 2 * max_radius;
         const std::int64_t x = cell(p.x / size), y = cell(p.y / size), z = cell(p.z / size);
         for (std::int64_t i = 0; i < 27; ++i) {
-            const auto there = cells_.find(key(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1));
-            if (there == cells_.end()) continue;
-            for (const Vec3d& other : there->second)
+            const auto neighbours = cells_.find(key(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1));
+            if (neighbours == cells_.end()) continue;
+            for (const Vec3d& other : neighbours->second)
                 if (length_squared(other - p) < size * size) return false;
         }
         cells_[key(x, y, z)].push_back(p);
@@ -51,7 +51,7 @@ private:
     }
 };
 
-/// The level as one static body, added to a scene.
+/// Adds the level to a scene as one static body.
 void add_level(const level::LevelSolids& solids, scene::Scene& scene) {
     scene::Body body;
     body.name = "level";
@@ -60,29 +60,29 @@ void add_level(const level::LevelSolids& solids, scene::Scene& scene) {
         scene::Collider collider;
         collider.shape = static_cast<std::uint32_t>(scene.shapes.size());
         collider.def.pose = solid.pose;
-        collider.def.user = solid.of;
+        collider.def.user = solid.source;
         scene.shapes.push_back(solid.shape);
         body.colliders.push_back(collider);
     }
-    const auto show = [&](const std::map<int, TriangleMesh>& meshes, const char* name, Vec3 tint) {
+    const auto add_visuals = [&](const std::map<int, TriangleMesh>& meshes, const char* name, Vec3 tint) {
         for (const auto& [light, mesh] : meshes) {
-            const float bright = 0.05f + 0.035f * static_cast<float>(light);
+            const float brightness = 0.05f + 0.035f * static_cast<float>(light);
             body.visuals.push_back({static_cast<std::uint32_t>(scene.meshes.size()),
                                     {},
                                     Mat3::identity(),
-                                    {tint.x * bright, tint.y * bright, tint.z * bright, 1}});
+                                    {tint.x * brightness, tint.y * brightness, tint.z * brightness, 1}});
             scene.meshes.push_back({name, mesh.positions, mesh.indices});
         }
     };
-    show(solids.floors, "floors", {0.95f, 0.9f, 0.75f});
-    show(solids.walls, "walls", {0.75f, 0.55f, 0.45f});
+    add_visuals(solids.floors, "floors", {0.95f, 0.9f, 0.75f});
+    add_visuals(solids.walls, "walls", {0.75f, 0.55f, 0.45f});
     scene.bodies.insert(scene.bodies.begin(), std::move(body));
 }
 
-/// Bodies of all shapes, in free places.
-class Thrower {
+/// Places bodies of all shapes at free positions.
+class BodyPlacer {
 public:
-    Thrower(const level::Map& map, const level::LevelBsp& bsp, std::uint64_t seed)
+    BodyPlacer(const level::Map& map, const level::LevelBsp& bsp, std::uint64_t seed)
         : map_(map), bsp_(bsp), random_(seed), builder_(map.name) {
         shapes_ = {builder_.shape(Sphere{0.25f}),           builder_.shape(Box{{0.2f, 0.2f, 0.2f}}),
                    builder_.shape(Capsule{0.18f, 0.2f}),    builder_.shape(Cylinder{0.22f, 0.2f}),
@@ -91,24 +91,24 @@ public:
             for (const level::Seg& seg : bsp.edges(s)) box_.add(bsp.vertices[seg.from]);
     }
 
-    /// How many found room.
-    std::size_t throw_in(std::size_t count) {
-        std::size_t done = 0;
-        for (std::size_t tries = 0; tries < tries_for_each * count && done < count; ++tries) {
+    /// Adds up to `count` bodies; returns how many fit.
+    std::size_t add_bodies(std::size_t count) {
+        std::size_t added = 0;
+        for (std::size_t tries = 0; tries < tries_per_body * count && added < count; ++tries) {
             const std::optional<Vec3d> place = free_place();
-            if (!place || !taken_.take(*place)) continue;
+            if (!place || !occupied_.try_insert(*place)) continue;
             static constexpr Vec3 colours[] = {{0.8f, 0.2f, 0.15f}, {0.2f, 0.5f, 0.8f}, {0.9f, 0.7f, 0.2f},
                                                {0.3f, 0.65f, 0.3f}, {0.7f, 0.4f, 0.7f}, {0.6f, 0.6f, 0.6f}};
-            const std::size_t kind = done++ % shapes_.size();
-            const scene::Stuff stuff{
+            const std::size_t kind = added++ % shapes_.size();
+            const scene::BodyStyle style{
                 "thrown", {colours[kind].x, colours[kind].y, colours[kind].z, 1}, 500, {.friction = 0.5f}};
-            const Vec3 velocity = scene::any_direction(random_) * random_.between(0, 4);
+            const Vec3 velocity = scene::random_direction(random_) * random_.between(0, 4);
             scene::Body& body = builder_.add(
-                shapes_[kind], stuff,
-                {.position = *place, .rotation = scene::any_rotation(random_), .linear_velocity = velocity});
-            body.def.angular_damping = 0.5f;  // what rolls comes to rest
+                shapes_[kind], style,
+                {.position = *place, .rotation = scene::random_rotation(random_), .linear_velocity = velocity});
+            body.def.angular_damping = 0.5f;  // so that rolling bodies come to rest
         }
-        return done;
+        return added;
     }
     [[nodiscard]] scene::Scene take() { return builder_.take(); }
 
@@ -118,17 +118,17 @@ private:
     Random random_;
     scene::Builder builder_;
     level::PlanBox box_;
-    Taken taken_;
+    OccupiedPlaces occupied_;
     std::vector<std::uint32_t> shapes_;
 
     std::optional<Vec3d> free_place() {
         const level::Point p{box_.lo.x + (box_.hi.x - box_.lo.x) * double(random_.unit()),
                              box_.lo.y + (box_.hi.y - box_.lo.y) * double(random_.unit())};
         const double share = double(random_.unit());
-        const auto room = level::room_around(bsp_, map_, p, double(reach) / level_scale);
+        const auto room = level::clearance_around(bsp_, map_, p, double(max_radius) / level_scale);
         if (!room) return std::nullopt;
-        const double low = room->floor * level_scale + double(reach),
-                     high = room->ceiling * level_scale - double(reach);
+        const double low = room->floor * level_scale + double(max_radius),
+                     high = room->ceiling * level_scale - double(max_radius);
         if (!(low < high)) return std::nullopt;
         return level::to_world(p, (low + (high - low) * share) / level_scale, level_scale);
     }
@@ -147,34 +147,34 @@ Result<LevelScene> load_level_scene(const std::string& path, const std::string& 
     if (options.count > max_bodies) {
         return Error{Status::OutOfRange,
                      "--count",
-                     fmt::format("found {}, need at most {} in a level", options.count, max_bodies),
+                     fmt::format("found {}; expected at most {} in a level", options.count, max_bodies),
                      {}};
     }
     const Result<level::Wad> wad = level::Wad::read(path);
     if (!wad) return wad.error();
     const std::vector<std::size_t> markers = wad->map_markers();
     if (markers.empty() && map.empty())
-        return Error{Status::Format, path, "found no map in it, need THINGS and LINEDEFS behind a marker", {}};
+        return Error{Status::Format, path, "found no map; expected THINGS and LINEDEFS after a marker", {}};
     Result<level::Map> read = level::read_map(path, *wad, map.empty() ? wad->lumps[markers[0]].name : map);
     if (!read) return read.error();
     LevelScene level;
     level.map = *std::move(read);
-    const auto named = [&](Error error) {
+    const auto with_map_name = [&](Error error) {
         error.where = fmt::format("{}: {} {}", path, level.map.name, error.where);
         return error;
     };
     Result<level::LevelBsp> bsp = level::compile(level.map);
-    if (!bsp) return named(bsp.error());
+    if (!bsp) return with_map_name(bsp.error());
     level.bsp = *std::move(bsp);
     const Result<level::LevelSolids> solids = level::make_solids(level.bsp, level.map, {.scale = level_scale});
-    if (!solids) return named(solids.error());
+    if (!solids) return with_map_name(solids.error());
 
     const std::size_t count = options.count > 0 ? options.count : default_level_bodies;
-    Thrower thrower(level.map, level.bsp, options.seed);
-    const std::size_t thrown = thrower.throw_in(count);
-    level.scene = thrower.take();
+    BodyPlacer placer(level.map, level.bsp, options.seed);
+    const std::size_t added = placer.add_bodies(count);
+    level.scene = placer.take();
     add_level(*solids, level.scene);
-    if (thrown < count) level.scene.warnings.push_back(fmt::format("found room for {} bodies of {}", thrown, count));
+    if (added < count) level.scene.warnings.push_back(fmt::format("only {} of {} bodies fit", added, count));
     return level;
 }
 

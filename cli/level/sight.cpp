@@ -1,4 +1,4 @@
-/// What is seen in a level: from a point, and from anywhere in each sub-sector.
+/// Visibility in a level: from a point, and between sub-sectors.
 #include "cli/level/sight.hpp"
 
 #include <fmt/format.h>
@@ -11,11 +11,12 @@
 namespace fase::cli {
 namespace {
 
-constexpr double eye_height = 41;  // map units, as the game has it
+constexpr double eye_height = 41;  // map units, as in Doom
 
-/// Casts rays from random places of the level and counts where they come to what is told to be hidden.
-void hold_against_rays(const level::Map& map, const level::LevelBsp& bsp, const level::VisibleSets& sets,
-                       const SightWish& wish, SightReport& report, TaskRunner& tasks) {
+/// Casts rays from random points of the level and counts sub-sectors that they reach although the sets call them
+/// hidden.
+void check_with_rays(const level::Map& map, const level::LevelBsp& bsp, const level::VisibleSets& sets,
+                     const SightOptions& options, SightReport& report, TaskRunner& tasks) {
     level::PlanBox box;
     for (const level::SubSector& s : bsp.sub_sectors)
         for (const level::Seg& seg : bsp.edges(s)) box.add(bsp.vertices[seg.from]);
@@ -23,12 +24,12 @@ void hold_against_rays(const level::Map& map, const level::LevelBsp& bsp, const 
         std::uint64_t rays = 0, passages = 0, hidden = 0;
     };
     constexpr std::size_t grain = 4096;
-    std::vector<Sum> sums((wish.rays + grain - 1) / grain);
-    parallel_ranges(tasks, wish.rays, grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Sum> sums((options.rays + grain - 1) / grain);
+    parallel_ranges(tasks, options.rays, grain, [&](std::size_t begin, std::size_t end) {
         Random random(1, begin);
         Sum& sum = sums[begin / grain];
-        std::vector<level::Passage> way;
-        constexpr std::size_t tries = 1000;  // for a place inside
+        std::vector<level::Passage> passages;
+        constexpr std::size_t tries = 1000;  // to find a point inside
         for (std::size_t left = (end - begin) * tries; left > 0 && sum.rays < end - begin; --left) {
             const level::Point from{box.lo.x + (box.hi.x - box.lo.x) * double(random.unit()),
                                     box.lo.y + (box.hi.y - box.lo.y) * double(random.unit())};
@@ -37,11 +38,12 @@ void hold_against_rays(const level::Map& map, const level::LevelBsp& bsp, const 
             const level::Opening room = level::opening_of(map, bsp.sub_sectors[*cell].sector);
             const double z = room.floor + (room.ceiling - room.floor) * double(random.unit());
             const level::Point direction{double(random.between(-1, 1)), double(random.between(-1, 1))};
-            way.clear();
-            level::passages(bsp, map, {from, z, direction, double(random.between(-0.3f, 0.3f))}, wish.heights, way);
+            passages.clear();
+            level::passages(bsp, map, {from, z, direction, double(random.between(-0.3f, 0.3f))}, options.heights,
+                            passages);
             ++sum.rays;
-            sum.passages += way.size();
-            for (const level::Passage& passage : way) sum.hidden += sets.sees(*cell, passage.sub_sector) ? 0 : 1;
+            sum.passages += passages.size();
+            for (const level::Passage& passage : passages) sum.hidden += sets.sees(*cell, passage.sub_sector) ? 0 : 1;
         }
     });
     for (const Sum& sum : sums) {
@@ -57,24 +59,24 @@ double share_of(const level::VisibleStats& s) {
 
 }  // namespace
 
-Result<SightReport> look_around(const level::Map& map, const level::LevelBsp& bsp, const SightWish& wish,
+Result<SightReport> look_around(const level::Map& map, const level::LevelBsp& bsp, const SightOptions& options,
                                 TaskRunner& tasks) {
     SightReport report;
     std::optional<std::uint32_t> cell;
-    if (wish.point) {
-        cell = level::sub_sector_at(bsp, *wish.point);
+    if (options.point) {
+        cell = level::sub_sector_at(bsp, *options.point);
         const double floor = cell ? level::opening_of(map, bsp.sub_sectors[*cell].sector).floor : 0;
-        report.from_point = level::seen_from(bsp, map, {*wish.point, floor + eye_height}, wish.heights);
+        report.from_point = level::seen_from(bsp, map, {*options.point, floor + eye_height}, options.heights);
     }
-    if (!wish.sets) return report;
+    if (!options.sets) return report;
     const auto start = std::chrono::steady_clock::now();
     const Result<level::VisibleResult> found =
-        level::find_visible(bsp, map, {.heights = wish.heights, .tasks = &tasks});
+        level::find_visible(bsp, map, {.heights = options.heights, .tasks = &tasks});
     if (!found) return found.error();
     report.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     report.sets = found->stats;
     if (cell) found->sets.for_each_seen(*cell, [&](std::uint32_t s) { report.from_cell.push_back(s); });
-    if (wish.rays > 0) hold_against_rays(map, bsp, found->sets, wish, report, tasks);
+    if (options.rays > 0) check_with_rays(map, bsp, found->sets, options, report, tasks);
     return report;
 }
 

@@ -1,4 +1,4 @@
-/// The rules of the viewer's server, in one place.
+/// The rules by which the viewer's server accepts requests.
 #include "cli/view/http_guard.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ bool is_port(std::string_view text) {
     return !text.empty() && text.size() <= 5 &&
            std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
-/// The port that "localhost:8000" names, "" when it names none; nullopt when it is another machine.
+/// The port in "localhost:8000"; "" if there is none; nullopt for another machine.
 std::optional<std::string_view> port_of_this_machine(std::string_view authority) {
     for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
         if (!equals_lower(authority.substr(0, name.size()), name)) continue;
@@ -54,7 +54,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-HttpVerdict judge_request_line(std::string_view line, bool& needs_host) {
+HttpVerdict check_request_line(std::string_view line, bool& needs_host) {
     const std::size_t first = line.find(' '), last = line.rfind(' ');
     if (first == line.npos || first == last) return malformed;
     const std::string_view method = line.substr(0, first), target = line.substr(first + 1, last - first - 1);
@@ -69,21 +69,21 @@ HttpVerdict judge_request_line(std::string_view line, bool& needs_host) {
 
 }  // namespace
 
-HttpVerdict judge_unfinished(std::string_view so_far) {
-    if (so_far.find('\n') == so_far.npos && so_far.size() > max_target_bytes + 100) return too_long;
-    return so_far.size() > max_head_bytes ? too_many : HttpVerdict{};
+HttpVerdict check_partial_head(std::string_view received) {
+    if (received.find('\n') == received.npos && received.size() > max_target_bytes + 100) return too_long;
+    return received.size() > max_head_bytes ? too_many : HttpVerdict{};
 }
 
-HttpVerdict judge(std::string_view head, int port) {
-    if (const HttpVerdict verdict = judge_unfinished(head); verdict.code != 0) return verdict;
-    const bool foreign_bytes = std::any_of(head.begin(), head.end(), [](char c) {
+HttpVerdict check_head(std::string_view head, int port) {
+    if (const HttpVerdict verdict = check_partial_head(head); verdict.code != 0) return verdict;
+    const bool control_bytes = std::any_of(head.begin(), head.end(), [](char c) {
         return (static_cast<unsigned char>(c) < 32 && c != '\r' && c != '\n' && c != '\t') || c == 127;
     });
-    if (foreign_bytes) return malformed;
+    if (control_bytes) return malformed;
     const std::size_t line_end = head.find("\r\n");
     if (line_end == head.npos) return malformed;
     bool needs_host = false;
-    if (const HttpVerdict verdict = judge_request_line(head.substr(0, line_end), needs_host); verdict.code != 0)
+    if (const HttpVerdict verdict = check_request_line(head.substr(0, line_end), needs_host); verdict.code != 0)
         return verdict;
     std::size_t lines = 0, hosts = 0, at = line_end + 2;
     HttpVerdict refused;

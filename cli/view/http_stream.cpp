@@ -1,4 +1,4 @@
-/// A connection with time limits.
+/// A browser's connection with time limits.
 #include "cli/view/http_stream.hpp"
 
 #include <poll.h>
@@ -13,15 +13,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Waits until `events` are there. False when the time is over or the socket is broken.
-bool wait_for(int socket, short events, Clock::time_point until) {
+/// Waits for `events`. False after `deadline` or if the socket is broken.
+bool wait_for(int socket, short events, Clock::time_point deadline) {
     for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
         if (left <= 0) return false;
         pollfd waiting{socket, events, 0};
-        const int answer = ::poll(&waiting, 1, static_cast<int>(std::min<long long>(left, 60000)));
-        if (answer > 0) return true;
-        if (answer < 0 && errno != EINTR) return false;
+        const int ready = ::poll(&waiting, 1, static_cast<int>(std::min<long long>(left, 60000)));
+        if (ready > 0) return true;
+        if (ready < 0 && errno != EINTR) return false;
     }
 }
 
@@ -30,32 +30,32 @@ bool wait_for(int socket, short events, Clock::time_point until) {
 HttpStream::Waited HttpStream::next_head(int port) {
     buffer_.erase(0, head_);
     head_ = read_ = 0;
-    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_);
+    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout_);
     std::size_t searched = 0;
     for (;;) {
         const std::size_t end = buffer_.find("\r\n\r\n", searched > 3 ? searched - 3 : 0);
         if (end != buffer_.npos) {
-            verdict_ = judge(std::string_view(buffer_).substr(0, end + 4), port);
+            verdict_ = check_head(std::string_view(buffer_).substr(0, end + 4), port);
             if (verdict_.code != 0) return Waited::Refused;
             head_ = end + 4;
             return Waited::Head;
         }
         searched = buffer_.size();
-        verdict_ = judge_unfinished(buffer_);
+        verdict_ = check_partial_head(buffer_);
         if (verdict_.code != 0) return Waited::Refused;
-        if (!wait_for(socket_, POLLIN, until)) return buffer_.empty() ? Waited::Closed : Waited::TooLate;
+        if (!wait_for(socket_, POLLIN, deadline)) return buffer_.empty() ? Waited::Closed : Waited::TimedOut;
         char bytes[4096];
-        const ssize_t came = ::recv(socket_, bytes, sizeof bytes, MSG_DONTWAIT);
-        if (came > 0) {
-            buffer_.append(bytes, static_cast<std::size_t>(came));
-        } else if (came == 0 || (errno != EINTR && errno != EAGAIN)) {
+        const ssize_t received = ::recv(socket_, bytes, sizeof bytes, MSG_DONTWAIT);
+        if (received > 0) {
+            buffer_.append(bytes, static_cast<std::size_t>(received));
+        } else if (received == 0 || (errno != EINTR && errno != EAGAIN)) {
             return Waited::Closed;
         }
     }
 }
 
 bool HttpStream::is_writable() const {
-    return wait_for(socket_, POLLOUT, Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_));
+    return wait_for(socket_, POLLOUT, Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout_));
 }
 
 ssize_t HttpStream::read(char* bytes, std::size_t size) {

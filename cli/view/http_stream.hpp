@@ -1,5 +1,5 @@
 #pragma once
-/// One connection of a browser, with time limits, as cpp-httplib reads and writes it.
+/// A browser's connection with time limits, in the form that cpp-httplib reads and writes.
 #include <httplib.h>
 
 #include <chrono>
@@ -9,19 +9,19 @@
 
 namespace fase::cli {
 
-/// Reads whole heads of requests itself and hands them on; writes with a time limit. Does not own the socket.
+/// Reads complete request heads and passes them to cpp-httplib; writes with a time limit. Does not own the socket.
 class HttpStream : public httplib::Stream {
 public:
     using Seconds = std::chrono::duration<double>;
-    /// @param patience how long a head may take to come, and how long a client may take no bytes
-    HttpStream(socket_t socket, Seconds patience) : socket_(socket), patience_(patience) {}
+    /// @param timeout for receiving a complete head, and for each time that the client must accept bytes
+    HttpStream(socket_t socket, Seconds timeout) : socket_(socket), timeout_(timeout) {}
 
-    /// What came of waiting for a request.
-    enum class Waited { Head, Closed, TooLate, Refused };
-    /// Waits for a whole head; read() then gives it. Refused: see verdict().
+    /// The result of waiting for a request.
+    enum class Waited { Head, Closed, TimedOut, Refused };
+    /// Waits for a complete head, which read() then returns. Refused: see verdict().
     Waited next_head(int port);
     [[nodiscard]] HttpVerdict verdict() const { return verdict_; }
-    /// Sends `text`, as far as the client takes it.
+    /// Sends `text`; stops when the client accepts no more.
     void send(std::string_view text) { write(text.data(), text.size()); }
 
     [[nodiscard]] bool is_readable() const override { return read_ < head_; }
@@ -35,10 +35,10 @@ public:
 
 private:
     socket_t socket_;
-    Seconds patience_;
+    Seconds timeout_;
     std::string buffer_;
-    std::size_t head_ = 0;  ///< bytes of the present head at the start of the buffer
-    std::size_t read_ = 0;  ///< of these, handed on
+    std::size_t head_ = 0;  ///< bytes of the current head at the start of the buffer
+    std::size_t read_ = 0;  ///< of these, already read
     HttpVerdict verdict_;
 };
 

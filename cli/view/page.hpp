@@ -1,5 +1,5 @@
 #pragma once
-/// The viewer and a recording as one page that opens from a file.
+/// The viewer and a recording as one page that browsers open from a file.
 #include <cstddef>
 #include <span>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace fase::cli {
 
-/// HTML with script, style and recording inside; refers to nothing outside itself. Capacity when the recording is
-/// longer than browsers take inside a page (256 MiB).
+/// Returns HTML that contains script, style and recording, without any external reference. Capacity when the recording
+/// exceeds the limit of browsers for a page (256 MiB).
 Result<std::string> self_contained_page(std::span<const std::byte> recording);
 
 }  // namespace fase::cli

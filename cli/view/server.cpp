@@ -1,4 +1,4 @@
-/// The viewer's server: cpp-httplib behind a guard.
+/// The viewer's server: cpp-httplib behind a check of request heads.
 #include "cli/view/server.hpp"
 
 #include <httplib.h>
@@ -11,6 +11,7 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "cli/view/http_stream.hpp"
@@ -20,8 +21,8 @@
 namespace fase::cli {
 namespace {
 
-constexpr HttpStream::Seconds patience{5};
-constexpr std::size_t many_connections = 128, max_connections = 512;
+constexpr HttpStream::Seconds timeout{5};
+constexpr std::size_t soft_connection_limit = 128, max_connections = 512;
 
 constexpr std::array<std::pair<const char*, const char*>, 6> common_headers{{
     {"X-Content-Type-Options", "nosniff"},
@@ -34,7 +35,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> common_headers{{
     {"Cache-Control", "no-store"},
 }};
 
-/// Open connections: who waits for a request, who is being served.
+/// Open connections, waiting for a request or being served.
 class Connections {
 public:
     void add(int socket) {
@@ -52,7 +53,7 @@ public:
         ::shutdown(socket, SHUT_RDWR);
         ::close(socket);
     }
-    /// Ends the connection that has waited longest; of all, when none waits.
+    /// Closes the connection that has waited longest; if none waits, the oldest.
     void drop_oldest() {
         const std::lock_guard lock(mutex_);
         const std::pair<const int, Connection>* oldest = nullptr;
@@ -82,31 +83,34 @@ private:
     bool stopped_ = false;
 };
 
-/// A thread for each connection; when there are many, the oldest that only waits makes room.
+/// One thread per connection. Above the soft limit, closes the oldest waiting connection.
 class ConnectionThreads : public httplib::TaskQueue {
 public:
     explicit ConnectionThreads(Connections& connections) : connections_(connections) {}
-    void enqueue(std::function<void()> work) override {
+    // void in cpp-httplib 0.11, bool ("accepted") since 0.14.
+    using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+    Enqueued enqueue(std::function<void()> work) override {
         {
             std::unique_lock lock(mutex_);
-            while (running_ >= many_connections) {
+            while (running_ >= soft_connection_limit) {
                 connections_.drop_oldest();
                 if (running_ < max_connections) break;
                 ended_.wait_for(lock, std::chrono::milliseconds(10));
             }
             ++running_;
         }
-        const auto all = [this, work = std::move(work)] {
+        const auto run = [this, work = std::move(work)] {
             work();
             const std::lock_guard lock(mutex_);
             --running_;
             ended_.notify_all();
         };
         try {
-            std::thread(all).detach();
+            std::thread(run).detach();
         } catch (const std::system_error&) {
-            all();
+            run();
         }
+        return Enqueued(true);
     }
     void shutdown() override {
         std::unique_lock lock(mutex_);
@@ -162,57 +166,68 @@ public:
             return HandlerResponse::Handled;
         });
     }
-    /// To be called once it is bound.
+    /// Call after binding.
     void set_port(int port) {
         port_ = port;
-        ::listen(svr_sock_, 1024);  // the library's queue of 5 lets clients wait a second each
+        ::listen(svr_sock_, 1024);  // the library's backlog of 5 delays clients by a second each
     }
 
 private:
     void answer(const httplib::Request& request, httplib::Response& response) const {
-        const auto give = [&](std::string_view content, const char* type) {
+        const auto send = [&](std::string_view content, const char* type) {
             response.set_content(content.data(), content.size(), type);
         };
         if (request.path == "/" || request.path == "/index.html")
-            return give(viewer::page(), "text/html; charset=utf-8");
-        if (request.path == "/viewer.js") return give(viewer::script(), "text/javascript; charset=utf-8");
-        if (request.path == "/viewer.css") return give(viewer::style(), "text/css; charset=utf-8");
-        if (request.path == "/recording") return give_recording(response);
+            return send(viewer::page(), "text/html; charset=utf-8");
+        if (request.path == "/viewer.js") return send(viewer::script(), "text/javascript; charset=utf-8");
+        if (request.path == "/viewer.css") return send(viewer::style(), "text/css; charset=utf-8");
+        if (request.path == "/recording") return send_recording(response);
         if (request.path == "/favicon.ico") {
             response.status = 204;
             return;
         }
-        refuse(response, 404, "there is no such page");
+        refuse(response, 404, "no such page");
     }
-    void give_recording(httplib::Response& response) const {
+    void send_recording(httplib::Response& response) const {
         Result<record::InputFile> opened = record::InputFile::open(recording_);
         if (!opened) opened = record::InputFile::open(recording_ + ".part");
-        if (!opened) return refuse(response, 404, "the recording cannot be read any more: " + opened.error().text());
+        if (!opened) return refuse(response, 404, "the recording can no longer be read: " + opened.error().text());
         const auto file = std::make_shared<record::InputFile>(std::move(*opened));
         if (file->size() == 0) return refuse(response, 404, "the recording is empty: " + recording_);
-        response.set_content_provider(static_cast<std::size_t>(file->size()), "application/octet-stream",
-                                      [file](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                                          std::vector<std::byte> part(std::min(length, std::size_t(1) << 18));
-                                          if (!file->read(offset, part))
-                                              return false;  // it shrank: the connection ends early, the page tells
-                                          return sink.write(reinterpret_cast<const char*>(part.data()), part.size());
-                                      });
+        response.set_content_provider(
+            static_cast<std::size_t>(file->size()), "application/octet-stream",
+            [file](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                std::vector<std::byte> part(std::min(length, std::size_t(1) << 18));
+                if (!file->read(offset, part))
+                    return false;  // the file shrank: closes the connection early, the page reports it
+                return sink.write(reinterpret_cast<const char*>(part.data()), part.size());
+            });
+    }
+    /// Answers one request. Since 0.16, cpp-httplib also takes the addresses of both ends; the server does not use
+    /// them.
+    template <class Library> static bool process(Library& library, HttpStream& stream, bool& closes) {
+        if constexpr (requires { library.process_request(stream, false, closes, nullptr); }) {
+            return library.process_request(stream, false, closes, nullptr);
+        } else {
+            return library.process_request(stream, "", 0, "", 0, false, closes, nullptr);
+        }
     }
     bool process_and_close_socket(socket_t socket) override {
         connections_.add(socket);
-        HttpStream stream(socket, patience);
+        HttpStream stream(socket, timeout);
         bool closed = false;
         while (!closed) {
             connections_.set_waiting(socket, true);
             const HttpStream::Waited waited = stream.next_head(port_);
             connections_.set_waiting(socket, false);
-            if (waited == HttpStream::Waited::TooLate) stream.send(refusal({408, "the request did not come in time"}));
+            if (waited == HttpStream::Waited::TimedOut)
+                stream.send(refusal({408, "the request was not received in time"}));
             if (waited == HttpStream::Waited::Refused) stream.send(refusal(stream.verdict()));
             if (waited != HttpStream::Waited::Head) break;
-            bool asked_to_close = false;
-            closed = !process_request(stream, false, asked_to_close, nullptr) || asked_to_close;
+            bool close_requested = false;
+            closed = !process(*this, stream, close_requested) || close_requested;
         }
-        // Let what was sent arrive: closing with unread bytes would cut it off.
+        // Read the rest first: closing a socket with unread bytes would discard sent data.
         ::shutdown(socket, SHUT_WR);
         char rest[4096];
         for (int i = 0; i < 64 && ::recv(socket, rest, sizeof rest, MSG_DONTWAIT) > 0; ++i) {
@@ -250,7 +265,7 @@ Result<ViewServer> ViewServer::listen(const std::string& recording, int port) {
     }
     if (state->port <= 0) {
         return Error{Status::Io, "127.0.0.1:" + std::to_string(port),
-                     "cannot listen there: the port is in use or not allowed", "choose another with --port"};
+                     "cannot listen: the port is in use or not allowed", "choose another port with --port"};
     }
     state->server.set_port(state->port);
     return ViewServer(std::move(state));
@@ -262,7 +277,7 @@ void ViewServer::run() {
     state_->ended = true;
 }
 void ViewServer::stop() {
-    // The library ignores a stop that comes before the loop runs.
+    // The library ignores stop() before its loop runs.
     while (!state_->server.is_running() && !state_->ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     state_->connections.stop();
     state_->server.stop();

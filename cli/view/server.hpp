@@ -7,20 +7,20 @@
 
 namespace fase::cli {
 
-/// Answers on 127.0.0.1 only: `/`, `/viewer.js`, `/viewer.css` from the program itself, `/recording` from the file,
-/// which is opened anew for each request (so it may be replaced or go away: then that request gets an error in words).
-/// Everything else is refused, see http_guard.hpp. A request's head must come within 5 s; of clients that only wait,
-/// the oldest are dropped when there are many.
+/// Listens on 127.0.0.1 only. Serves `/`, `/viewer.js` and `/viewer.css` from the program itself, and `/recording` from
+/// the file, which is opened for each request: if the file is missing, that request gets an error text. Refuses
+/// everything else, see http_guard.hpp. A request head must arrive within 5 s. With many connections, the oldest
+/// waiting ones are closed.
 class ViewServer {
 public:
-    /// Listens. Io when the port is taken, naming it. @param port 0: any free one
+    /// Starts to listen. Io, with the address, if the port is in use. @param port 0: any free port
     static Result<ViewServer> listen(const std::string& recording, int port);
     ViewServer(ViewServer&&) noexcept;
     ViewServer& operator=(ViewServer&&) noexcept;
-    /// Ends all connections.
+    /// Closes all connections.
     ~ViewServer();
     [[nodiscard]] int port() const;
-    /// Answers until stop() is called from another thread.
+    /// Answers requests until another thread calls stop().
     void run();
     void stop();
 

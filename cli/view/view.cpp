@@ -1,4 +1,4 @@
-/// Opens a recording and shows it the way that was asked for.
+/// The command `fase view`: shows a recording in the browser, or writes it as a page or as an animation.
 #include "cli/view/view.hpp"
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
-#include "cli/common/start.hpp"
 #include "cli/view/page.hpp"
 #include "cli/view/server.hpp"
 #include "fase/core/detail/files.hpp"
@@ -26,7 +26,7 @@ namespace {
 
 void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", printable(text)); }
 
-/// Whether all that is to be written can be, beside the file that is read.
+/// Checks that the output files can be written and differ from the input.
 Result<void> check_outputs(const ViewOptions& options, const std::string& input) {
     for (const std::string* out : {&options.html, &options.glb}) {
         if (out->empty()) continue;
@@ -35,7 +35,7 @@ Result<void> check_outputs(const ViewOptions& options, const std::string& input)
     return {};
 }
 
-/// The bytes of a recording as far as they are good.
+/// The valid bytes of a recording.
 Result<std::vector<std::byte>> good_bytes(const record::Player& player) {
     const Result<record::InputFile> file = record::InputFile::open(player.path());
     if (!file) return file.error();
@@ -58,7 +58,7 @@ Result<void> write_glb(record::Player& player, const std::string& name) {
     return write_file(name, *glb);
 }
 
-/// Until a signal comes: its number.
+/// Waits for a signal; returns its number.
 int wait_for_signal(const sigset_t& signals) {
     int signal = 0;
     while (sigwait(&signals, &signal) != 0) {
@@ -74,13 +74,13 @@ int serve(const record::Player& player, const ViewOptions& options) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     Result<ViewServer> server = ViewServer::listen(options.file, options.port);
     if (!server) return refuse(server.error());
-    std::thread answering([&] { (*server).run(); });
+    std::thread server_thread([&] { (*server).run(); });
     fmt::print("{}: {} frames, {} bodies\nhttp://127.0.0.1:{}/   (Ctrl-C ends)\n", printable(player.path()),
                player.frames(), player.tables().bodies.size(), (*server).port());
     std::fflush(stdout);
     const int signal = wait_for_signal(signals);
     (*server).stop();
-    answering.join();
+    server_thread.join();
     return 128 + signal;
 }
 
@@ -93,7 +93,7 @@ int run_view(const ViewOptions& options) {
     if (!(*player).lost().empty()) warn((*player).path() + ": " + (*player).lost());
     std::error_code ignored;
     if ((*player).path() == options.file && std::filesystem::exists(options.file + ".part", ignored)) {
-        warn(options.file + ".part: stands beside it, of a recording that is running or was never finished");
+        warn(options.file + ".part: exists too, from a recording that is running or was never finished");
     }
     if (Result<void> checked = check_outputs(options, (*player).path()); !checked) return refuse(checked.error());
     if (!options.html.empty()) {
@@ -108,19 +108,19 @@ int run_view(const ViewOptions& options) {
     return serve(*player, options);
 }
 
-void add_view(CLI::App& app, Start& start) {
-    auto& view = start.options<ViewOptions>();
-    CLI::App& command = *app.add_subcommand("view", "Show a recording in the browser");
-    add_text(command, "FILE", "A recording of 'fase run --record'", view.file)->required();
-    add_text(command, "--html", "Write one self-contained page instead of serving", view.html);
-    add_text(command, "--glb", "Write the motion as a glTF animation instead of serving", view.glb);
-    add_whole_number(command, "--port", "Serve on 127.0.0.1:N (default: any free one)", 0, 65535, view.port);
-    command.footer(
+void add_view(Command& program, CommandRegistry& registry) {
+    auto& view = registry.options<ViewOptions>();
+    Command command = program.add_command("view", "Show a recording in the browser");
+    command.add_text("FILE", "A recording of 'fase run --record'", view.file).required();
+    command.add_text("--html", "Write one self-contained page instead of serving", view.html);
+    command.add_text("--glb", "Write the motion as a glTF animation instead of serving", view.glb);
+    command.add_whole_number("--port", "Serve on 127.0.0.1:N (default: any free port)", 0, 65535, view.port);
+    command.set_footer(
         "\nExamples:\n"
         "  fase view castle.faserec\n"
         "  fase view castle.faserec --html castle.html\n"
         "  fase view castle.faserec --glb castle_animation.glb");
-    start.on(command, [&view] { return run_view(view); });
+    registry.on(command, [&view] { return run_view(view); });
 }
 
 }  // namespace fase::cli

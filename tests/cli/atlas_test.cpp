@@ -1,4 +1,4 @@
-/// `fase atlas`: pages of images, rectangles for measuring, and what is refused.
+/// Tests `fase atlas`: pages of images, measured rectangles, refusals.
 #include <filesystem>
 #include <fstream>
 
@@ -17,7 +17,7 @@ void write_image(const std::string& path, int width, int height, std::uint8_t sh
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
 }
-/// A folder with five images, two of them alike, one in a folder below.
+/// A folder with five images: two are identical, one is in a sub-folder.
 std::string make_sprites(const TemporaryFolder& folder) {
     const std::string sprites = folder / "sprites";
     fs::create_directories(sprites + "/below");
@@ -65,7 +65,7 @@ TEST(AtlasCommand, GivesTheSameFilesForTheSameTries) {
         EXPECT_EQ(read_file(std::string(folder / "one") + file), read_file(std::string(folder / "two") + file));
 }
 
-TEST(AtlasCommand, MakesSeveralPagesWhereOneIsTooSmall) {
+TEST(AtlasCommand, CreatesSeveralPagesIfOneIsTooSmall) {
     const TemporaryFolder folder;
     const std::string sprites = make_sprites(folder);
     write_image(sprites + "/large.png", 28, 28, 90);
@@ -122,7 +122,7 @@ TEST(AtlasCommand, WritesNothingWhenItRefuses) {
     expect_error_line(run_fase({"atlas", sprites, "-o", folder / "nowhere/sheet"}), 3, "nowhere");
     expect_error_line(run_fase({"atlas", sprites + "/a.png", sprites + "/none.png", "-o", name}), 3, "none.png");
     expect_error_line(run_fase({"atlas", sprites + "/a.png", sprites + "/a.png", "-o", name}), 2, "a.png");
-    expect_error_line(run_fase({"atlas", sprites + "/a.png", "-o", sprites + "/a"}), 3, "found a file that is read");
+    expect_error_line(run_fase({"atlas", sprites + "/a.png", "-o", sprites + "/a"}), 3, "found an input file");
     expect_error_line(run_fase({"atlas", out, "-o", name}), 2, "found no .png file");
     EXPECT_EQ(files_in(out), 0u);
 }
@@ -136,8 +136,8 @@ TEST(AtlasCommand, RefusesALinkThatLeavesTheFolder) {
     EXPECT_FALSE(fs::exists(folder / "sheet.png"));
 }
 
-TEST(AtlasCommand, RefusesOptionsThatCannotBeMeant) {
-    expect_error_line(run_fase({"atlas"}), 2, "found none, need PNG files");
+TEST(AtlasCommand, RefusesInvalidOptions) {
+    expect_error_line(run_fase({"atlas"}), 2, "found none; expected PNG files");
     expect_error_line(run_fase({"atlas", "a.png"}), 2, "--output");
     expect_error_line(run_fase({"atlas", "a.png", "--rects", "x", "-o", "y"}), 2, "--rects");
     expect_error_line(run_fase({"atlas", "--rects", "x", "--method", "best_of_all"}), 2, "--method");
@@ -145,7 +145,7 @@ TEST(AtlasCommand, RefusesOptionsThatCannotBeMeant) {
     expect_error_line(run_fase({"atlas", "--rects", "x", "--budget-ms", "-1"}), 2, "--budget-ms");
 }
 
-TEST(AtlasCommand, RefusesEachBrokenPicture) {
+TEST(AtlasCommand, RefusesEachBrokenImage) {
     const std::string suite = std::string(FASE_SHARED_DATA) + "/png/pngsuite";
     if (!fs::exists(suite)) GTEST_SKIP() << "skipped: no " << suite;
     const TemporaryFolder folder;

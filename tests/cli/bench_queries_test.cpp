@@ -1,4 +1,4 @@
-/// `fase bench queries`: its keys, its table, its refusals.
+/// Tests `fase bench queries`: its JSON keys, its CSV file, its refusals.
 #include "tests/cli/fase_program.hpp"
 
 namespace fase::cli {
@@ -34,7 +34,7 @@ TEST_F(BenchQueries, PrintsARowForEachKind) {
                                                 "wide_bvh boxes", "wide_bvh frusta", "wide_bvh rays"}));
 }
 
-TEST_F(BenchQueries, TheTableGrowsByARowAKind) {
+TEST_F(BenchQueries, AppendsARowPerKindToTheCsvFile) {
     const TemporaryFolder folder;
     const std::string table = folder / "q.csv";
     ASSERT_EQ(bench({"--scene", "pile", "--contender", "wide_bvh", "--csv", table}).code, 0);
@@ -43,7 +43,7 @@ TEST_F(BenchQueries, TheTableGrowsByARowAKind) {
     EXPECT_EQ(text.substr(0, 20), "date,commit,machine,");
 }
 
-TEST_F(BenchQueries, RefusesWhatCannotBeMeant) {
+TEST_F(BenchQueries, RefusesInvalidOptions) {
     EXPECT_EQ(bench({"--contender", "fastest"}).code, 2);
     EXPECT_EQ(bench({"--scene", "moon"}).code, 2);
     EXPECT_EQ(bench({"--scene", "level", "--mesh", "/no/such/file.obj"}).code, 3);

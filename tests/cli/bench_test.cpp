@@ -1,4 +1,4 @@
-/// `fase bench step`: its keys, its table, its refusals.
+/// Tests `fase bench step`: its JSON keys, its CSV file, its refusals.
 #include "tests/cli/fase_program.hpp"
 
 namespace fase::cli {
@@ -48,7 +48,7 @@ TEST_F(BenchStep, EnginesBuildTheSameWall) {
     });
 }
 
-TEST_F(BenchStep, TheTableGrowsByARowAnEngine) {
+TEST_F(BenchStep, AppendsARowPerEngineToTheCsvFile) {
     const TemporaryFolder folder;
     const std::string table = folder / "t.csv";
     const auto lines = [&] {
@@ -68,8 +68,8 @@ TEST_F(BenchStep, TheTableGrowsByARowAnEngine) {
 }
 
 TEST_F(BenchStep, RefusesUnknownScenesAndEngines) {
-    expect_error_line(bench({"--scene", "moon"}), 2, "--scene: found \"moon\", need one of large_pyramid");
-    expect_error_line(bench({"--engine", "steam"}), 2, "--engine: found \"steam\", need one of all, fase");
+    expect_error_line(bench({"--scene", "moon"}), 2, "--scene: found \"moon\"; expected one of large_pyramid");
+    expect_error_line(bench({"--engine", "steam"}), 2, "--engine: found \"steam\"; expected one of all, fase");
     expect_error_line(bench({"--engine", "fase,"}), 2, "--engine: found \"\"");
     expect_error_line(bench({"--threads", "0"}), 2, "--threads: found \"0\"");
 }

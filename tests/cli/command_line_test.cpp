@@ -1,4 +1,4 @@
-/// The command line of `fase`: help, refusals, streams that are closed or full.
+/// Tests the command line of `fase`: help, refusals, closed or full streams.
 #include "tests/cli/fase_program.hpp"
 
 namespace fase::cli {
@@ -21,20 +21,20 @@ TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
 }
 
 TEST(CommandLine, EachExampleOfTheHelpIsAccepted) {
-    // Commands are only taken apart: a file that is not there is the first thing that may go wrong.
+    // Only parses the commands: the files do not exist.
     for (const char* command : {"run", "view", "info", "generate", "distance", "pairs", "query"}) {
         const std::string help = run_fase({command, "--help"}).out;
         std::size_t examples = 0;
         const std::string mark = std::string("\n  fase ") + command;
-        for (std::size_t at = help.find(mark); at != std::string::npos; at = help.find(mark, at + 1)) {
+        for (std::size_t i = help.find(mark); i != std::string::npos; i = help.find(mark, i + 1)) {
             std::vector<std::string> words;
-            std::string line = help.substr(at + 3, help.find('\n', at + 1) - at - 3), word;
+            std::string line = help.substr(i + 3, help.find('\n', i + 1) - i - 3), word;
             for (const char c : line + " ") {
                 if (c != ' ') word += c;
                 if (c == ' ' && !word.empty()) words.push_back(std::exchange(word, {}));
             }
             words.erase(words.begin());
-            words.push_back("--help");  // stops after the arguments were read
+            words.push_back("--help");  // stops after parsing
             EXPECT_EQ(run_fase(words).code, 0) << line;
             ++examples;
         }
@@ -42,29 +42,29 @@ TEST(CommandLine, EachExampleOfTheHelpIsAccepted) {
     }
 }
 
-TEST(CommandLine, WhatCannotBeMeantIsRefusedByName) {
+TEST(CommandLine, InvalidArgumentsAreRefusedAndNamed) {
     struct Case {
         std::vector<std::string> arguments;
         std::string words;
     };
     const std::vector<Case> cases{
         {{}, "COMMAND: found none"},
-        {{"jump"}, "jump: found an unknown command, need one of run, view"},
+        {{"jump"}, "jump: found an unknown command; expected one of run, view"},
         {{"--loud"}, "--loud: found an unknown option"},
         {{"run"}, "SCENE"},
         {{"run", ""}, "SCENE: found \"\""},
         {{"run", "stack", "more"}, "more: found an unknown argument"},
         {{"run", "stack", "--loud"}, "--loud: found an unknown option"},
         {{"run", "stack", "--steps"}, "--steps: found no value"},
-        {{"run", "stack", "--steps", "1e999"}, "--steps: found \"1e999\", need a whole number"},
+        {{"run", "stack", "--steps", "1e999"}, "--steps: found \"1e999\"; expected a whole number"},
         {{"run", "stack", "--steps", "-5"}, "--steps: found \"-5\""},
         {{"run", "stack", "--steps", "12abc"}, "--steps: found \"12abc\""},
         {{"run", "stack", "--steps", ""}, "--steps: found \"\""},
         {{"run", "stack", "--steps", " 5"}, "--steps: found \" 5\""},
         {{"run", "stack", "--steps", "18446744073709551617"}, "--steps: found \"18446744073709551617\""},
-        {{"run", "stack", "--steps", "1", "--steps", "2"}, "--steps: found more than once"},
+        {{"run", "stack", "--steps", "1", "--steps", "2"}, "--steps: found several times"},
         {{"run", "stack", "--steps", "1", "--seconds", "2"}, "--steps"},
-        {{"run", "stack", "--seconds", "1e999"}, "--seconds: found \"1e999\", need a number above 0"},
+        {{"run", "stack", "--seconds", "1e999"}, "--seconds: found \"1e999\"; expected a number above 0"},
         {{"run", "stack", "--seconds", "-5"}, "--seconds: found \"-5\""},
         {{"run", "stack", "--seconds", "0"}, "--seconds: found \"0\""},
         {{"run", "stack", "--seconds", "nan"}, "--seconds: found \"nan\""},
@@ -85,22 +85,22 @@ TEST(CommandLine, WhatCannotBeMeantIsRefusedByName) {
     }
 }
 
-TEST(CommandLine, AHugeArgumentIsCutInTheMessage) {
-    const std::string huge(120000, 'a');  // the system takes no single argument of 128 KiB
+TEST(CommandLine, AHugeArgumentIsTruncatedInTheMessage) {
+    const std::string huge(120000, 'a');  // the system limit for one argument is 128 KiB
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{huge}, {"run", "stack", "--" + huge}, {"run", "stack", "--steps", huge}}) {
         const Outcome outcome = run_fase(arguments);
         expect_error_line(outcome, 2, "aaaa…");
         EXPECT_LT(outcome.err.size(), 400u);
     }
-    std::vector<std::string> many(17, huge);  // 2 MiB in all
+    std::vector<std::string> many(17, huge);  // 2 MiB in total
     many.insert(many.begin(), {"run", "stack"});
     const Outcome outcome = run_fase(many);
     expect_error_line(outcome, 2, "found an unknown argument");
     EXPECT_LT(outcome.err.size(), 400u);
 }
 
-TEST(CommandLine, AStrangePathWorksAndIsEscapedWhenPrinted) {
+TEST(CommandLine, APathWithControlCharactersWorksAndIsEscapedInOutput) {
     const TemporaryFolder folder;
     const std::string strange = folder / "a\n\t\x1b[1m\xff.glb";
     ASSERT_EQ(run_fase({"generate", "stack", "--count", "2", "-o", strange}).code, 0);
@@ -118,14 +118,14 @@ TEST(CommandLine, AStrangePathWorksAndIsEscapedWhenPrinted) {
     expect_error_line(missing, 3, "b\\n\\x1b\\xff.glb");
 }
 
-TEST(CommandLine, ANameThatBeginsWithADashIsAFileBehindTwo) {
+TEST(CommandLine, ANameThatBeginsWithADashIsAFileAfterADoubleDash) {
     const TemporaryFolder folder;
     const std::string go = "cd '" + folder.path() + "' && exec \"$0\" \"$@\"";
     EXPECT_EQ(RunningFase::by_shell(go, {"generate", "stack", "--count", "2", "--output=-x.glb"}).wait().code, 0);
     EXPECT_EQ(RunningFase::by_shell(go, {"run", "--steps", "1", "--", "-x.glb"}).wait().code, 0);
 }
 
-TEST(CommandLine, AClosedStandardOutputIsNoError) {
+TEST(CommandLine, AClosedStandardOutputIsNotAnError) {
     const TemporaryFolder folder;
     const std::string recording = folder / "r.faserec";
     const Outcome closed = RunningFase({"run", "stack", "--steps", "5", "--record", recording}, "closed").wait();
@@ -135,7 +135,7 @@ TEST(CommandLine, AClosedStandardOutputIsNoError) {
     EXPECT_NE(info.out.find("\"complete\": true"), std::string::npos) << info.out;
 }
 
-TEST(CommandLine, AReaderThatLeavesEndsItQuietly) {
+TEST(CommandLine, AReaderThatClosesThePipeEndsItQuietly) {
     for (const char* option : {"--help", "--version"}) {
         const Outcome outcome = RunningFase::by_shell("\"$0\" \"$@\" | true; exit 0", {option}).wait();
         EXPECT_EQ(outcome.code, 0);

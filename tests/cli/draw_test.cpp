@@ -1,4 +1,4 @@
-/// `fase draw`: pictures of the cells of structures.
+/// Tests `fase draw`: pictures of the cells of structures.
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/trace.hpp"
 #include "tests/cli/fase_program.hpp"
@@ -6,7 +6,7 @@
 namespace fase::cli {
 namespace {
 
-/// Rows of 60 boxes on the ground: the first 20 static, the next 20 asleep; from frame 1 on the last 25 rise.
+/// Rows of 60 boxes on the ground: the first 20 are static, the next 20 asleep; from frame 1 on, the last 25 rise.
 std::string write_trace(const TemporaryFolder& folder, std::uint32_t frames = 3) {
     const std::string name = folder / "boxes.aabt";
     auto writer = record::TraceWriter::create(name, 60);
@@ -15,9 +15,9 @@ std::string write_trace(const TemporaryFolder& folder, std::uint32_t frames = 3)
     for (std::uint32_t frame = 0; frame < frames; ++frame) {
         std::vector<Aabb> boxes;
         for (int i = 0; i < 60; ++i) {
-            const Vec3 at{2.0f * static_cast<float>(i % 10), i < 35 ? 0.0f : static_cast<float>(frame),
-                          3.0f * static_cast<float>(i / 10)};
-            boxes.push_back({at, at + Vec3{1.5f, 1, 2}});
+            const Vec3 corner{2.0f * static_cast<float>(i % 10), i < 35 ? 0.0f : static_cast<float>(frame),
+                              3.0f * static_cast<float>(i / 10)};
+            boxes.push_back({corner, corner + Vec3{1.5f, 1, 2}});
             if (frame == 0)
                 flags.push_back(i < 20   ? std::uint8_t{record::trace_static}
                                 : i < 40 ? std::uint8_t{record::trace_asleep}
@@ -54,17 +54,17 @@ TEST(Draw, WritesEachBoxInItsColourAndTheCells) {
     EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(Draw, LivesThroughTheFramesBefore) {
+TEST(Draw, UpdatesTheStructureThroughTheFramesBefore) {
     const TemporaryFolder folder;
     const std::string trace = write_trace(folder), file = folder / "later.svg";
     ASSERT_EQ(run_fase({"draw", trace, "--frame", "2", "--plane", "xy", "-o", file}).code, 0);
     const std::string svg = read_file(file);
     EXPECT_NE(svg.find("plane xy, frame 2"), std::string::npos);
-    EXPECT_NE(svg.find(">15 resting<"), std::string::npos) << "five sleepers have moved";
+    EXPECT_NE(svg.find(">15 resting<"), std::string::npos) << "five sleeping boxes moved";
     EXPECT_NE(svg.find(">25 awake<"), std::string::npos);
 }
 
-TEST(Draw, FillsAFolderWithAPictureAStructure) {
+TEST(Draw, WritesOnePicturePerStructureIntoAFolder) {
     const TemporaryFolder folder;
     const std::string trace = write_trace(folder), pictures = folder / "pictures";
     std::filesystem::create_directory(pictures);
@@ -86,7 +86,7 @@ TEST(Draw, FillsAFolderWithAPictureAStructure) {
 
 TEST(Draw, ShowsInfiniteBoxesAndPoints) {
     const TemporaryFolder folder;
-    const std::string name = folder / "odd.aabt";
+    const std::string name = folder / "special.aabt";
     auto writer = record::TraceWriter::create(name, 3);
     ASSERT_TRUE(writer);
     constexpr float far = Aabb::infinity;
@@ -94,17 +94,17 @@ TEST(Draw, ShowsInfiniteBoxesAndPoints) {
     ASSERT_TRUE(writer->add_frame(boxes));
     ASSERT_TRUE(writer->finish(std::vector<std::uint8_t>(3, 0)));
     for (const char* plane : {"xz", "xy", "yz"}) {
-        const Outcome drawn = run_fase({"draw", name, "--plane", plane, "-o", folder / "odd.svg"});
+        const Outcome drawn = run_fase({"draw", name, "--plane", plane, "-o", folder / "special.svg"});
         EXPECT_EQ(drawn.code, 0) << drawn.err;
-        const std::string svg = read_file(folder / "odd.svg");
+        const std::string svg = read_file(folder / "special.svg");
         EXPECT_EQ(count_of(svg, "<rect x="), 3u);
         EXPECT_EQ(svg.find("inf"), std::string::npos);
         EXPECT_EQ(svg.find("nan"), std::string::npos);
-        EXPECT_EQ(svg.find("=\"0\"/>"), std::string::npos) << "a box of no height is not seen";
+        EXPECT_EQ(svg.find("=\"0\"/>"), std::string::npos) << "a box without height is invisible";
     }
 }
 
-TEST(Draw, RefusesWhatCannotBeMeant) {
+TEST(Draw, RefusesInvalidOptions) {
     const TemporaryFolder folder;
     const std::string trace = write_trace(folder), file = folder / "x.svg";
     const auto expect_refused = [&](std::vector<std::string> options, int code, const std::string& words) {
@@ -113,10 +113,10 @@ TEST(Draw, RefusesWhatCannotBeMeant) {
         EXPECT_FALSE(std::filesystem::exists(file));
     };
     expect_refused({trace, "--structure", "oaktree", "-o", file}, 2, "--structure: found");
-    expect_refused({trace, "--plane", "zx", "-o", file}, 2, "--plane: found \"zx\", need xz, xy or yz");
-    expect_refused({trace, "--frame", "3", "-o", file}, 2, "--frame: found 3, need 0 to 2");
+    expect_refused({trace, "--plane", "zx", "-o", file}, 2, "--plane: found \"zx\"; expected xz, xy or yz");
+    expect_refused({trace, "--frame", "3", "-o", file}, 2, "--frame: found 3; expected 0 to 2");
     expect_refused({trace, "--frame", "-1", "-o", file}, 2, "--frame");
-    expect_refused({trace, "-o", folder / "x.png"}, 2, "x.png: found another ending");
+    expect_refused({trace, "-o", folder / "x.png"}, 2, "x.png: found another extension");
     expect_refused({trace, "--structure", "all", "-o", file}, 2, "found no folder");
     expect_refused({trace, "-o", folder / "none/x.svg"}, 3, "found no folder");
     expect_refused({folder / "none.aabt", "-o", file}, 3, "none.aabt");
@@ -124,8 +124,7 @@ TEST(Draw, RefusesWhatCannotBeMeant) {
     write_file(folder / "text.aabt", "something else");
     expect_refused({folder / "text.aabt", "-o", file}, 2, "text.aabt");
     std::filesystem::copy_file(trace, folder / "self.svg");
-    expect_error_line(run_fase({"draw", folder / "self.svg", "-o", folder / "self.svg"}), 3,
-                      "found the file that is read");
+    expect_error_line(run_fase({"draw", folder / "self.svg", "-o", folder / "self.svg"}), 3, "found the input file");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// The program under test: started with arguments and streams of the test's choice.
+/// Runs the program under test with given arguments and streams.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -22,22 +22,22 @@ using record::read_file;
 using record::TemporaryFolder;
 using record::write_file;
 
-/// How a run of the program ended. `code` is its exit code, or -n when signal n ended it.
+/// The result of a run. `code` is the exit code, or -n if signal n ended the program.
 struct Outcome {
     int code = 0;
     std::string out, err;
 };
 
-/// A run of the program. Its streams go to files in a folder of its own, unless told otherwise.
+/// A run of the program. By default, its streams go to files in a temporary folder.
 class RunningFase {
 public:
-    /// @param out where standard output goes: a file's name, "" for a file of its own, "closed"
+    /// @param out target of standard output: a file name, "" for a temporary file, or "closed"
     explicit RunningFase(const std::vector<std::string>& arguments, const std::string& out = {}) {
         std::vector<std::string> all{FASE_PROGRAM};
         all.insert(all.end(), arguments.begin(), arguments.end());
         start(all, out);
     }
-    /// Runs a shell line instead, in which "$0" is the program and "$@" the arguments.
+    /// Runs a shell line in which "$0" is the program and "$@" are the arguments.
     static RunningFase by_shell(const std::string& line, const std::vector<std::string>& arguments) {
         std::vector<std::string> all{"/bin/sh", "-c", line, FASE_PROGRAM};
         all.insert(all.end(), arguments.begin(), arguments.end());
@@ -60,7 +60,7 @@ public:
         const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
         return {code, read_file(folder_ / "out"), read_file(folder_ / "err")};
     }
-    /// What it has written to standard error so far.
+    /// The text on standard error up to now.
     [[nodiscard]] std::string errors_so_far() const { return read_file(folder_ / "err"); }
 
 private:
@@ -71,8 +71,8 @@ private:
         pointers.push_back(nullptr);
         posix_spawn_file_actions_t streams;
         ::posix_spawn_file_actions_init(&streams);
-        const std::string own = folder_ / "out", errors = folder_ / "err";
-        const std::string& out_name = out.empty() ? own : out;
+        const std::string default_out = folder_ / "out", errors = folder_ / "err";
+        const std::string& out_name = out.empty() ? default_out : out;
         constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
         ::posix_spawn_file_actions_addopen(&streams, 0, "/dev/null", O_RDONLY, 0);
         ::posix_spawn_file_actions_addopen(&streams, 2, errors.c_str(), flags, 0600);
@@ -101,17 +101,17 @@ private:
 /// Runs the program to its end.
 inline Outcome run_fase(const std::vector<std::string>& arguments) { return RunningFase(arguments).wait(); }
 
-/// Asks until it is so, for at most 30 s.
-template <class Question> bool wait_until(Question&& question) {
+/// Waits until `condition` holds, for at most 30 s.
+template <class Condition> bool wait_until(Condition&& condition) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < end) {
-        if (question()) return true;
+        if (condition()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return false;
 }
 
-/// The error line that the outcome must have: one line, of the form that scripts know.
+/// Expects exactly one error line in the documented form, with `words` in it.
 inline void expect_error_line(const Outcome& outcome, int code, const std::string& words) {
     EXPECT_EQ(outcome.code, code) << outcome.err;
     EXPECT_TRUE(outcome.err.starts_with("fase: error: ")) << outcome.err;
@@ -126,7 +126,7 @@ inline std::set<std::string> keys_of(const scene::JsonValue& object) {
     object.for_each_member([&](std::string_view key, const scene::JsonValue&) { keys.emplace(key); });
     return keys;
 }
-/// That an object has all the keys that scripts rely on.
+/// Expects all documented keys in an object.
 inline void expect_keys(const scene::JsonValue& object, const std::vector<std::string>& keys) {
     for (const std::string& key : keys) EXPECT_TRUE(object.find(key)) << "no key " << key;
 }

@@ -1,4 +1,4 @@
-/// `fase generate`, `info` and `distance`: what they write and print.
+/// Tests `fase generate`, `info` and `distance`: their files and their output.
 #include <fmt/format.h>
 
 #include "fase/scene/generate.hpp"
@@ -7,7 +7,7 @@
 namespace fase::cli {
 namespace {
 
-TEST(Generate, MakesEveryKindSmall) {
+TEST(Generate, GeneratesASmallSceneOfEveryKind) {
     const TemporaryFolder folder;
     for (const scene::Generator& kind : scene::generators()) {
         const std::string file = folder / (std::string(kind.name) + ".glb");
@@ -31,16 +31,16 @@ TEST(Generate, EqualSeedsGiveEqualBytes) {
     EXPECT_NE(bytes("6"), first);
 }
 
-TEST(Generate, RefusesOtherKindsCountsAndEndings) {
+TEST(Generate, RefusesUnknownKindsCountsAndExtensions) {
     const TemporaryFolder folder;
     expect_error_line(run_fase({"generate", "palace", "-o", folder / "p.glb"}), 2,
-                      "KIND: found \"palace\", need one of castle");
-    expect_error_line(run_fase({"generate", "pile", "-o", folder / "p.obj"}), 2, "p.obj: found another ending");
+                      "KIND: found \"palace\"; expected one of castle");
+    expect_error_line(run_fase({"generate", "pile", "-o", folder / "p.obj"}), 2, "p.obj: found another extension");
     expect_error_line(run_fase({"generate", "pile", "--count", "1000001", "-o", folder / "p.glb"}), 2, "--count");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(Info, TellsScenesAndRecordingsApart) {
+TEST(Info, DistinguishesScenesAndRecordings) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_fase({"generate", "stack", "--count", "4", "-o", folder / "s.glb"}).code, 0);
     ASSERT_EQ(run_fase({"run", folder / "s.glb", "--steps", "9", "--record", folder / "r"}).code, 0);
@@ -59,7 +59,7 @@ TEST(Info, TellsScenesAndRecordingsApart) {
     expect_error_line(run_fase({"info", folder / "none"}), 3, "none");
 }
 
-/// Two unit spheres that are 1 m apart, held against a published distance.
+/// Two unit spheres 1 m apart, with a published distance to compare.
 std::string pairs_file(double published) {
     constexpr const char* unit = "\"rot\": [1,0,0,0,1,0,0,0,1]";
     return fmt::format(
@@ -89,7 +89,7 @@ TEST(Distance, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_NE(lines.out.find("1 of 1 within tolerance"), std::string::npos) << lines.out;
 }
 
-TEST(Distance, AWrongDistanceIsExitCode1) {
+TEST(Distance, AWrongDistanceGivesExitCode1) {
     const TemporaryFolder folder;
     write_file(folder / "pairs.json", pairs_file(1.5));
     const Outcome outcome = run_fase({"distance", folder / "pairs.json"});
@@ -100,7 +100,7 @@ TEST(Distance, AWrongDistanceIsExitCode1) {
     expect_error_line(run_fase({"distance", folder / "none.json"}), 3, "none.json");
 }
 
-TEST(Distance, ThePublishedPairsAreAllRight) {
+TEST(Distance, AllPublishedPairsAreCorrect) {
     const std::string file = FASE_SHARED_DATA "/shape-pairs/pairs.json";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no " << file;
     const Outcome outcome = run_fase({"distance", file});

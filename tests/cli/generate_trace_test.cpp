@@ -1,4 +1,4 @@
-/// Traces by rule and traces of runs, through the command.
+/// Tests generated traces and traces of runs through the command.
 #include "fase/record/generate_trace.hpp"
 #include "fase/record/trace.hpp"
 #include "tests/cli/made_traces.hpp"
@@ -6,7 +6,7 @@
 namespace fase::cli {
 namespace {
 
-TEST(GenerateTrace, MakesEveryKindAndEveryKindIsRight) {
+TEST(GenerateTrace, GeneratesEveryKindAndItsPairsAreCorrect) {
     const TemporaryFolder folder;
     for (const record::TraceKind& kind : record::trace_kinds()) {
         const std::string name = folder / "t.aabt", word(kind.name);
@@ -26,14 +26,14 @@ TEST(GenerateTrace, HelpNamesEveryKind) {
         EXPECT_NE(help.find("\n  " + std::string(kind.name) + " "), std::string::npos) << kind.name;
 }
 
-TEST(GenerateTrace, TheEndingDecidesBetweenSceneAndTrace) {
+TEST(GenerateTrace, TheExtensionSelectsSceneOrTrace) {
     const TemporaryFolder folder;
     EXPECT_EQ(run_fase({"generate", "pile", "--count", "20", "-o", folder / "p.glb"}).code, 0);
     EXPECT_EQ(run_fase({"generate", "pile", "--count", "20", "-o", folder / "p.aabt"}).code, 0);
     EXPECT_NE(run_fase({"info", folder / "p.glb"}).out.find("glTF scene"), std::string::npos);
     EXPECT_NE(run_fase({"info", folder / "p.aabt"}).out.find("box trace"), std::string::npos);
     expect_error_line(run_fase({"generate", "castle", "-o", folder / "c.aabt"}), 2,
-                      "KIND: found \"castle\", need one of uniform");
+                      "KIND: found \"castle\"; expected one of uniform");
     expect_error_line(run_fase({"generate", "rain", "-o", folder / "r.glb"}), 2, "KIND: found \"rain\"");
     expect_error_line(run_fase({"generate", "pile", "--frames", "5", "-o", folder / "q.glb"}), 2, "--frames");
     expect_error_line(run_fase({"generate", "rain", "-o", folder / "none/r.aabt"}), 3, "found no folder");
@@ -41,7 +41,7 @@ TEST(GenerateTrace, TheEndingDecidesBetweenSceneAndTrace) {
     EXPECT_FALSE(std::filesystem::exists(folder / "r.glb"));
 }
 
-TEST(GenerateTrace, AFullDiskIsToldWithWhatWasWritten) {
+TEST(GenerateTrace, AFullDiskIsReportedWithTheWrittenAmount) {
     const TemporaryFolder folder;
     const Outcome outcome =
         RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"", {"generate", "rain", "-o", folder / "r.aabt"}).wait();
@@ -49,7 +49,7 @@ TEST(GenerateTrace, AFullDiskIsToldWithWhatWasWritten) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(InfoOfTraces, SaysWhatIsInThemAndReadsThemWhole) {
+TEST(InfoOfTraces, PrintsTheContentsAndValidatesTheWholeFile) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     write_trace(name, {{cube_at(0), cube_at(2), cube_at(4)}, {cube_at(0), cube_at(2.5f), cube_at(4)}},
@@ -63,13 +63,13 @@ TEST(InfoOfTraces, SaysWhatIsInThemAndReadsThemWhole) {
     for (const auto& [key, value] : expected) EXPECT_EQ(number_at(info, key), value) << key;
     EXPECT_EQ(text_at(info, "room_largest"), "5 1 1");
     std::string bytes = read_file(name);
-    bytes[bytes.size() - 13] = '\x7f';  // the last box, infinite or NaN where it begins
+    bytes[bytes.size() - 13] = '\x7f';  // makes a lower bound of the last box NaN
     bytes[bytes.size() - 14] = '\xff';
     write_file(name, bytes);
-    expect_error_line(run_fase({"info", name}), 2, "frame 1, body 2: found NaN as least z");
+    expect_error_line(run_fase({"info", name}), 2, "frame 1, body 2: found NaN as lower z");
 }
 
-TEST(RunTrace, HoldsTheBeginningAndEveryStep) {
+TEST(RunTrace, ContainsTheInitialStateAndEveryStep) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     const Outcome run = run_fase({"run", "stack", "--steps", "20", "--trace", name, "--json"});
@@ -77,14 +77,14 @@ TEST(RunTrace, HoldsTheBeginningAndEveryStep) {
     auto trace = record::TraceReader::open(name);
     ASSERT_TRUE(trace) << trace.error().text();
     EXPECT_EQ(trace->frames(), 21u);
-    std::size_t fixed = 0;
-    for (const auto flag : trace->flags()) fixed += (flag & record::trace_static) != 0 ? 1 : 0;
-    EXPECT_GE(fixed, 1u) << "the ground";
-    EXPECT_LT(fixed, trace->boxes());
+    std::size_t static_boxes = 0;
+    for (const auto flag : trace->flags()) static_boxes += (flag & record::trace_static) != 0 ? 1 : 0;
+    EXPECT_GE(static_boxes, 1u) << "the ground";
+    EXPECT_LT(static_boxes, trace->boxes());
     EXPECT_EQ(run_fase({"pairs", name, "--structure", "all", "--check"}).code, 0);
 }
 
-TEST(RunTrace, LeavesTheHashAsItIsAndGoesWithARecording) {
+TEST(RunTrace, DoesNotChangeTheHashAndWorksWithARecording) {
     const TemporaryFolder folder;
     const auto hash = [&](const std::vector<std::string>& more) {
         std::vector<std::string> all{"run", "stack", "--steps", "20", "--json"};
@@ -95,10 +95,10 @@ TEST(RunTrace, LeavesTheHashAsItIsAndGoesWithARecording) {
     EXPECT_EQ(hash({}), hash({"--trace", folder / "t.aabt", "--record", folder / "r.faserec"}));
     EXPECT_TRUE(std::filesystem::exists(folder / "r.faserec"));
     EXPECT_TRUE(std::filesystem::exists(folder / "t.aabt"));
-    expect_error_line(run_fase({"run", "stack", "--trace", folder / "x", "--record", folder / "x"}), 3, "need two");
+    expect_error_line(run_fase({"run", "stack", "--trace", folder / "x", "--record", folder / "x"}), 3, "expected two");
 }
 
-TEST(RunTrace, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
+TEST(RunTrace, AnUnwritablePathIsRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     const std::vector<std::string> run{"run", "stack", "--steps", "100000", "--trace"};
     const auto to = [&](const std::string& name) {
@@ -111,7 +111,7 @@ TEST(RunTrace, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
     expect_error_line(to("/dev/full"), 3, "found a device");
 }
 
-TEST(RunTrace, WhatFittedOnAFullDiskIsKept) {
+TEST(RunTrace, TheFramesThatFitOnAFullDiskAreKept) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     const Outcome outcome = RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"",
@@ -124,7 +124,7 @@ TEST(RunTrace, WhatFittedOnAFullDiskIsKept) {
         << outcome.err;
 }
 
-TEST(RunTrace, ASignalEndsItWithTheTraceWhole) {
+TEST(RunTrace, ASignalEndsTheRunWithACompleteTrace) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
     RunningFase running({"run", "stack", "--steps", "10000000", "--trace", name});

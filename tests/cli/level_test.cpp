@@ -1,4 +1,4 @@
-/// `fase level`: trees of maps, plans, lumps, and what is refused.
+/// Tests `fase level`: trees of maps, plans, lumps, refusals.
 #include <filesystem>
 #include <fstream>
 
@@ -13,11 +13,11 @@ namespace {
 namespace fs = std::filesystem;
 
 void write_wad(const std::string& path, const level::Wad& wad) {
-    const auto bytes = wad.packed();
+    const auto bytes = wad.to_bytes();
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
 }
-/// A WAD with one map, and one with two.
+/// Write a WAD file with one map, and one with two.
 std::string one_map(const TemporaryFolder& folder) {
     write_wad(folder / "one.wad", level::wad_of(level::pool_map()));
     return folder / "one.wad";
@@ -32,12 +32,12 @@ std::string two_maps(const TemporaryFolder& folder) {
     return folder / "two.wad";
 }
 
-TEST(LevelCommand, TellsWhatATreeIsLike) {
+TEST(LevelCommand, PrintsTheFiguresOfATree) {
     const TemporaryFolder folder;
-    const Outcome told = run_fase({"level", one_map(folder), "MAP01", "--json", "--check", "--point", "20,20"});
-    ASSERT_EQ(told.code, 0) << told.err;
-    const auto json = scene::parse_json(told.out);
-    ASSERT_TRUE(json) << told.out;
+    const Outcome outcome = run_fase({"level", one_map(folder), "MAP01", "--json", "--check", "--point", "20,20"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto json = scene::parse_json(outcome.out);
+    ASSERT_TRUE(json) << outcome.out;
     expect_keys(json->root(),
                 {"map", "lines", "segs", "splits", "nodes", "subsectors", "mean_depth", "worst_depth", "ms"});
     EXPECT_EQ(number_at(json->root(), "lines"), 12);
@@ -46,7 +46,7 @@ TEST(LevelCommand, TellsWhatATreeIsLike) {
     EXPECT_EQ(number_at(*json->root().find("point"), "sector"), 0);
     const Outcome words = run_fase({"level", one_map(folder), "--stats", "--point", "300,100"});
     EXPECT_EQ(words.code, 0) << words.err;
-    EXPECT_NE(words.out.find("right: walls stick out"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("right: walls protrude"), std::string::npos) << words.out;
     EXPECT_NE(words.out.find("of sector 1, floor -32"), std::string::npos) << words.out;
 }
 
@@ -110,17 +110,17 @@ TEST(LevelCommand, RefusesInOneLineAndWritesNothing) {
         arguments.insert(arguments.begin(), "level");
         expect_error_line(run_fase(arguments), code, words);
     };
-    refused({two}, 2, "found 2 maps, need the name of one of MAP01, MAP02; or --all");
-    refused({one, "E9M9"}, 2, "found no map \"E9M9\", need one of MAP01");
+    refused({two}, 2, "found 2 maps; expected the name of one of MAP01, MAP02; or --all");
+    refused({one, "E9M9"}, 2, "no map \"E9M9\"; expected one of MAP01");
     refused({folder / "none.wad"}, 3, "none.wad");
     refused({one, "--weight", "-1"}, 2, "--weight");
-    refused({one, "--weight", "1e999"}, 2, "--weight: found \"1e999\", need a number from 0 to 1000");
-    refused({one, "--effort", "some"}, 2, "need quick, normal or thorough");
-    refused({one, "--lumps", "NODES"}, 2, "need nodes or gl");
-    refused({one, "--point", "3;4"}, 2, "need X,Y");
-    refused({one, "--point", "nan,0"}, 2, "need X,Y");
-    refused({one, "--lumps", "nodes"}, 2, "found no such lump, need one");
-    refused({two, "--all", "--svg", folder / "a.svg"}, 2, "need one MAP");
+    refused({one, "--weight", "1e999"}, 2, "--weight: found \"1e999\"; expected a number from 0 to 1000");
+    refused({one, "--effort", "some"}, 2, "expected quick, normal or thorough");
+    refused({one, "--lumps", "NODES"}, 2, "expected nodes or gl");
+    refused({one, "--point", "3;4"}, 2, "expected X,Y");
+    refused({one, "--point", "nan,0"}, 2, "expected X,Y");
+    refused({one, "--lumps", "nodes"}, 2, "no such lump; expected one");
+    refused({two, "--all", "--svg", folder / "a.svg"}, 2, "expected a single MAP");
     refused({one, "-o", one}, 3, "one.wad");
     refused({one, "-o", folder / "no/such.wad"}, 3, "such.wad");
     refused({one, "MAP01", "--svg", folder / "x.svg", "-o", one}, 3, "one.wad");
@@ -138,7 +138,7 @@ TEST(LevelCommand, FailsTheCheckOfAWrongTree) {
     ASSERT_EQ(run_fase({"level", one_map(folder), "-o", folder / "out.wad"}).code, 0);
     auto wad = *level::Wad::read(folder / "out.wad");
     auto& nodes = wad.lumps[*wad.find_in_map(0, "NODES")].bytes;
-    nodes[nodes.size() - 28] ^= std::byte{0x80};  // the root's line is somewhere else
+    nodes[nodes.size() - 28] ^= std::byte{0x80};  // moves the line of the root
     write_wad(folder / "wrong.wad", wad);
     const Outcome outcome = run_fase({"level", folder / "wrong.wad", "--lumps", "nodes", "--check"});
     EXPECT_EQ(outcome.code, 1) << outcome.out << outcome.err;

@@ -1,5 +1,5 @@
 #pragma once
-/// Small traces for tests of the command.
+/// Writes small traces for tests of the command.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -23,7 +23,7 @@ inline void write_trace(const std::string& name, const std::vector<std::vector<A
     ASSERT_TRUE(finished) << finished.error().text();
 }
 
-/// What a command printed with `--json`, as an array; the document lives as long as this.
+/// The `--json` output of a command as an array; owns the document.
 class Rows {
 public:
     explicit Rows(const std::string& text) : document_(scene::parse_json(text)) {

@@ -1,4 +1,4 @@
-/// `fase pairs`: what it prints, what it checks, what it refuses.
+/// Tests `fase pairs`: its output, its checks, its refusals.
 #include "fase/broad/any_structure.hpp"
 #include "tests/cli/made_traces.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 const std::vector<std::string> row_keys{"structure",   "threads",    "frames",    "build_ms", "ms",      "hash",
                                         "pairs_first", "pairs_last", "pairs_sum", "bytes",    "checked", "chosen"};
 
-/// Four cubes in a row of which the last comes nearer; 0 and 1 are static and overlap, 2 sleeps on 1 till it is woken.
+/// Four cubes in a row; the last one approaches. 0 and 1 are static and overlap; 2 sleeps on 1 until it is woken.
 class Pairs : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -34,7 +34,7 @@ TEST_F(Pairs, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_NE(text_at(rows[0], "reason").find("few boxes"), std::string::npos);
     EXPECT_EQ(number_at(rows[0], "threads"), 1);
     EXPECT_EQ(number_at(rows[0], "frames"), 3);
-    // {1, 2}; then {2, 3} too, which touch; then {0, 3}, {1, 3} besides.
+    // {1, 2}; then also {2, 3}, which touch; then also {0, 3}, {1, 3}.
     EXPECT_EQ(number_at(rows[0], "pairs_first"), 1);
     EXPECT_EQ(number_at(rows[0], "pairs_last"), 4);
     EXPECT_EQ(number_at(rows[0], "pairs_sum"), 7);
@@ -44,7 +44,7 @@ TEST_F(Pairs, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_GT(number_at(rows[0], "bytes"), 0);
 }
 
-TEST_F(Pairs, TellsBegunAndEndedPairs) {
+TEST_F(Pairs, ReportsBegunAndEndedPairs) {
     for (const char* structure : {"auto", "all"}) {
         const Outcome outcome = run_fase({"pairs", trace, "--changes", "--check", "--json", "--structure", structure});
         EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -60,7 +60,7 @@ TEST_F(Pairs, TellsBegunAndEndedPairs) {
     EXPECT_NE(table.out.find("3 pairs began, 0 ended"), std::string::npos) << table.out;
 }
 
-TEST_F(Pairs, AllStructuresAgreeWithAnyThreads) {
+TEST_F(Pairs, AllStructuresAgreeForAnyNumberOfThreads) {
     std::string hash;
     for (const char* threads : {"1", "3"}) {
         const Outcome outcome =
@@ -83,7 +83,7 @@ TEST_F(Pairs, AllStructuresAgreeWithAnyThreads) {
     }
 }
 
-TEST_F(Pairs, TheHashTellsOtherPairsAndFramesApart) {
+TEST_F(Pairs, TheHashDependsOnPairsAndFrames) {
     const auto hash = [&](const std::vector<std::string>& more) {
         std::vector<std::string> all{"pairs", trace, "--json"};
         all.insert(all.end(), more.begin(), more.end());
@@ -97,16 +97,16 @@ TEST_F(Pairs, TheHashTellsOtherPairsAndFramesApart) {
     const std::string one = hash({});
     EXPECT_NE(one, before);
     write_trace(trace, {{cube_at(0), cube_at(9), cube_at(0.5f)}}, {0, 0, 0});
-    EXPECT_NE(hash({}), one) << "one pair too, but of others";
+    EXPECT_NE(hash({}), one) << "one pair again, of other boxes";
 }
 
-TEST_F(Pairs, WithoutCheckNothingIsSaidOfIt) {
+TEST_F(Pairs, WithoutCheckTheResultIsNull) {
     const Rows rows(run_fase({"pairs", trace, "--json", "--frames", "1"}).out);
     EXPECT_EQ(kind_at(rows[0], "checked"), scene::JsonKind::Null);
     EXPECT_EQ(number_at(rows[0], "frames"), 1);
 }
 
-TEST_F(Pairs, PrintsATableForPeople) {
+TEST_F(Pairs, PrintsAnAlignedTable) {
     const Outcome outcome = run_fase({"pairs", trace, "--structure", "all", "--check"});
     EXPECT_EQ(outcome.code, 0);
     EXPECT_NE(outcome.out.find("4 boxes, 2 static, 1 asleep; 3 of 3 frames; 1 thread"), std::string::npos)
@@ -114,15 +114,15 @@ TEST_F(Pairs, PrintsATableForPeople) {
     EXPECT_NE(outcome.out.find("\nbrute_force "), std::string::npos) << outcome.out;
     EXPECT_EQ(outcome.out.find("WRONG"), std::string::npos);
     std::size_t length = 0;
-    for (std::size_t at = outcome.out.find('\n') + 1; at < outcome.out.size();) {
-        const std::size_t end = outcome.out.find('\n', at);
-        if (length == 0) length = end - at;
-        EXPECT_EQ(end - at, length) << "the columns are aligned";
-        at = end + 1;
+    for (std::size_t begin = outcome.out.find('\n') + 1; begin < outcome.out.size();) {
+        const std::size_t end = outcome.out.find('\n', begin);
+        if (length == 0) length = end - begin;
+        EXPECT_EQ(end - begin, length) << "the columns are aligned";
+        begin = end + 1;
     }
 }
 
-TEST_F(Pairs, OfAllWhatWouldTakeTooLongIsSkippedAndSaidToBe) {
+TEST_F(Pairs, WithAllStructuresSlowOnesAreSkippedAndMarked) {
     ASSERT_EQ(run_fase({"generate", "uniform", "--count", "20000", "--frames", "50", "-o", trace}).code, 0);
     const Outcome outcome = run_fase({"pairs", trace, "--structure", "all", "--limit", "0.0005", "--json"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -137,16 +137,17 @@ TEST_F(Pairs, OfAllWhatWouldTakeTooLongIsSkippedAndSaidToBe) {
     EXPECT_NE(table.out.find("skipped: would take"), std::string::npos) << table.out;
     const Outcome named =
         run_fase({"pairs", trace, "--structure", "brute_force", "--limit", "0.0005", "--frames", "1", "--json"});
-    EXPECT_EQ(kind_at(Rows(named.out)[0], "skipped"), scene::JsonKind::Null) << "one that is named is never skipped";
+    EXPECT_EQ(kind_at(Rows(named.out)[0], "skipped"), scene::JsonKind::Null)
+        << "a structure that is named is never skipped";
 }
 
-TEST_F(Pairs, WhatIsNoTraceIsRefused) {
+TEST_F(Pairs, RefusesFilesThatAreNotTraces) {
     expect_error_line(run_fase({"pairs", folder / "none.aabt"}), 3, "none.aabt: cannot open");
     const std::string good = read_file(trace);
     std::string bytes = good;
-    for (std::size_t i = 0; i < 4; ++i) bytes[20 + (4 + 2) * 24 + i] = '\xff';  // frame 1, body 2: least x
+    for (std::size_t i = 0; i < 4; ++i) bytes[20 + (4 + 2) * 24 + i] = '\xff';  // frame 1, body 2: lower x
     write_file(trace, bytes);
-    expect_error_line(run_fase({"pairs", trace, "--json"}), 2, ":164: frame 1, body 2: found NaN as least x");
+    expect_error_line(run_fase({"pairs", trace, "--json"}), 2, ":164: frame 1, body 2: found NaN as lower x");
     write_file(trace, good.substr(0, 100));
     expect_error_line(run_fase({"pairs", trace}), 2, ":100: frame 0, body 3: found the end of the file");
     write_file(trace, "{}");
@@ -154,19 +155,19 @@ TEST_F(Pairs, WhatIsNoTraceIsRefused) {
     expect_error_line(run_fase({"info", folder / "t.aabt"}), 2, "t.aabt");
 }
 
-TEST_F(Pairs, OptionsThatCannotBeMeantAreNamed) {
+TEST_F(Pairs, RefusesInvalidOptionsByName) {
     expect_error_line(run_fase({"pairs", trace, "--structure", "magic"}), 2,
-                      "--structure: found \"magic\", need auto, all or one of brute_force");
+                      "--structure: found \"magic\"; expected auto, all or one of brute_force");
     expect_error_line(run_fase({"pairs", trace, "--frames", "0"}), 2, "--frames: found \"0\"");
     expect_error_line(run_fase({"pairs"}), 2, "TRACE");
 }
 
-TEST_F(Pairs, MorePairsThanCanBeHeldAreRefusedBeforeTheyAreSought) {
+TEST_F(Pairs, TooManyPairsAreRefusedBeforeTheSearch) {
     write_trace(trace, {std::vector<Aabb>(60000, cube_at(0))}, std::vector<std::uint8_t>(60000, 0));
-    expect_error_line(run_fase({"pairs", trace}), 4, "frame 0: found about 1.8e+09 pairs, need at most 268435456");
+    expect_error_line(run_fase({"pairs", trace}), 4, "frame 0: found about 1.8e+09 pairs; expected at most 268435456");
 }
 
-TEST_F(Pairs, ASignalEndsItWithTheRowsThatAreDone) {
+TEST_F(Pairs, ASignalEndsItWithTheFinishedRows) {
     ASSERT_EQ(run_fase({"generate", "uniform", "--count", "6000", "--frames", "400", "-o", trace}).code, 0);
     RunningFase running({"pairs", trace, "--structure", "brute_force", "--json"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -176,7 +177,7 @@ TEST_F(Pairs, ASignalEndsItWithTheRowsThatAreDone) {
     EXPECT_EQ(Rows(outcome.out).size(), 0u);
 }
 
-TEST_F(Pairs, OfOthersTracesAreRight) {
+TEST_F(Pairs, PairsOfAPublishedTraceAreCorrect) {
     const std::string name = std::string(FASE_SHARED_DATA) + "/traces/cloth-funnel.aabt";
     if (!std::filesystem::exists(name)) GTEST_SKIP() << "skipped: " << name << " is missing";
     const Outcome outcome = run_fase({"pairs", name, "--check", "--json"});

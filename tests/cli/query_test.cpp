@@ -1,4 +1,4 @@
-/// `fase query`: what it prints, what it checks, what it refuses.
+/// Tests `fase query`: its output, its checks, its refusals.
 #include "fase/broad/any_structure.hpp"
 #include "tests/cli/made_traces.hpp"
 
@@ -52,9 +52,9 @@ TEST(Query, AllStructuresGiveTheSameAnswersOnScenesAndTraces) {
     }
 }
 
-TEST(Query, TakesEachRayToTheBoxThatItMeets) {
+TEST(Query, FindsTheBoxThatEachQueryHits) {
     const TemporaryFolder folder;
-    // One large box around all: each ray begins in it, each box and view touches it.
+    // One large box: each ray starts inside it, each box and frustum overlaps it.
     write_trace(folder / "t.aabt", {{{{-5, -5, -5}, {5, 5, 5}}}}, {0});
     const Rows rows(query(folder / "t.aabt", {"--json", "--check"}).out);
     EXPECT_EQ(number_at(rows[0], "ray_hits"), 200);
@@ -63,7 +63,7 @@ TEST(Query, TakesEachRayToTheBoxThatItMeets) {
     EXPECT_TRUE(is_true(rows[0], "checked"));
 }
 
-TEST(Query, WhatIsNotAskedHasNoRate) {
+TEST(Query, OmittedKindsHaveNoRate) {
     const Rows rows(run_fase({"query", "stack", "--rays", "50", "--boxes", "0", "--frusta", "0", "--json"}).out);
     EXPECT_GT(number_at(rows[0], "rays_per_second"), 0);
     EXPECT_EQ(kind_at(rows[0], "boxes_per_second"), scene::JsonKind::Null);
@@ -72,7 +72,7 @@ TEST(Query, WhatIsNotAskedHasNoRate) {
     EXPECT_EQ(number_at(rows[0], "hits"), number_at(rows[0], "ray_hits"));
 }
 
-TEST(Query, InfiniteBoxesAreAskedToo) {
+TEST(Query, InfiniteBoxesAreQueriedToo) {
     const TemporaryFolder folder;
     constexpr float infinity = Aabb::infinity;
     std::vector<Aabb> boxes{{{-infinity, -infinity, -infinity}, {infinity, 0, infinity}}};
@@ -84,20 +84,20 @@ TEST(Query, InfiniteBoxesAreAskedToo) {
     EXPECT_EQ(query(folder / "t.aabt", {"--structure", "all", "--check"}).code, 0) << "nothing else";
 }
 
-TEST(Query, OneWithoutTimeSaysHowFarItCame) {
+TEST(Query, AStructureAtItsTimeLimitReportsItsProgress) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_fase({"generate", "uniform", "--count", "20000", "--frames", "1", "-o", folder / "u.aabt"}).code, 0);
-    const std::vector<std::string> hurry{"query",   folder / "u.aabt", "--structure", "brute_force",
-                                         "--limit", "0.0001",          "--frusta",    "0"};
-    std::vector<std::string> with_json = hurry;
+    const std::vector<std::string> limited{"query",   folder / "u.aabt", "--structure", "brute_force",
+                                           "--limit", "0.0001",          "--frusta",    "0"};
+    std::vector<std::string> with_json = limited;
     with_json.push_back("--json");
     const Rows rows(run_fase(with_json).out);
     EXPECT_EQ(kind_at(rows[0], "hits"), scene::JsonKind::Null);
     EXPECT_LT(number_at(rows[0], "rays"), 10000);
-    EXPECT_NE(run_fase(hurry).out.find("stopped when its time was over"), std::string::npos);
+    EXPECT_NE(run_fase(limited).out.find("stopped at its time limit"), std::string::npos);
 }
 
-TEST(Query, PrintsATableForPeople) {
+TEST(Query, PrintsATable) {
     const Outcome outcome = query("stack", {"--check"});
     EXPECT_EQ(outcome.code, 0);
     EXPECT_NE(outcome.out.find("200 rays, 200 boxes, 20 frusta"), std::string::npos) << outcome.out;
@@ -105,8 +105,8 @@ TEST(Query, PrintsATableForPeople) {
     EXPECT_NE(outcome.out.find(" ok\n"), std::string::npos) << outcome.out;
 }
 
-TEST(Query, FilesAndOptionsThatCannotBeMeantAreNamed) {
-    expect_error_line(run_fase({"query", "nothing.glb"}), 3, "nothing.glb: found no such file");
+TEST(Query, RefusesInvalidFilesAndOptionsByName) {
+    expect_error_line(run_fase({"query", "nothing.glb"}), 3, "nothing.glb: no such file");
     expect_error_line(run_fase({"query", "stack", "--structure", "magic"}), 2, "--structure: found \"magic\"");
     expect_error_line(run_fase({"query", "stack", "--rays", "-1"}), 2, "--rays: found \"-1\"");
     const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-/// `fase run --record`: where it may write, and that a recording survives signals, kills and full disks.
+/// Tests `fase run --record`: where it writes, and that a recording survives signals, kills and full disks.
 #include <sys/stat.h>
 
 #include "fase/record/player.hpp"
@@ -10,7 +10,7 @@ namespace {
 using record::Player;
 using Clock = std::chrono::steady_clock;
 
-/// A run that would take hours; small, so that many frames are flushed in a second.
+/// A run of hours with a small scene: it flushes many frames per second.
 const std::vector<std::string> long_run{"run",        "stack",   "--count",  "10",
                                         "--no-sleep", "--steps", "10000000", "--record"};
 
@@ -25,7 +25,7 @@ std::uint64_t bytes_of(const std::string& file) {
     return ignored ? 0 : size;
 }
 
-/// Reads every frame; how many there are. Steps must follow each other.
+/// Reads every frame and returns their number. Expects consecutive steps.
 std::uint64_t read_all(Player& player) {
     record::Frame frame;
     for (std::uint64_t i = 0; i < player.frames(); ++i) {
@@ -36,7 +36,7 @@ std::uint64_t read_all(Player& player) {
     return player.frames();
 }
 
-TEST(Recording, HoldsTheBeginningAndEveryStep) {
+TEST(Recording, ContainsTheInitialStateAndEveryStep) {
     const TemporaryFolder folder;
     const std::string file = folder / "r.faserec";
     const Outcome outcome = run_fase({"run", "castle", "--count", "100", "--steps", "25", "--record", file});
@@ -51,7 +51,7 @@ TEST(Recording, HoldsTheBeginningAndEveryStep) {
     EXPECT_FALSE(player->tables().visuals.empty());
 }
 
-TEST(Recording, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
+TEST(Recording, AnUnwritablePathIsRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     const std::string scene = folder / "scene.glb";
     ASSERT_EQ(run_fase({"generate", "stack", "-o", scene}).code, 0);
@@ -60,9 +60,9 @@ TEST(Recording, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
     const auto refused = [&](const std::string& out, const std::string& words) {
         expect_error_line(run_fase({"run", scene, "--steps", "1000000", "--record", out}), 3, words);
     };
-    refused(scene, "found the file that is read");
-    refused(folder / "link", "found the file that is read");
-    refused(folder / "./scene.glb", "found the file that is read");
+    refused(scene, "found the input file");
+    refused(folder / "link", "found the input file");
+    refused(folder / "./scene.glb", "found the input file");
     refused(folder.path(), "found a folder");
     refused(folder / "new/", "found no folder");
     refused(folder / "none/r.faserec", "found no folder");
@@ -76,16 +76,16 @@ TEST(Recording, WhereItCannotBeWrittenIsSaidBeforeTheRun) {
     expect_error_line(run_fase({"generate", "stack", "-o", folder.path()}), 3, "found a folder");
 }
 
-TEST(Recording, AReadOnlyPlaceIsRefused) {
+TEST(Recording, AReadOnlyFileOrFolderIsRefused) {
     const TemporaryFolder folder;
     const std::string file = folder / "r.faserec";
-    // The superuser may write everywhere, unless that is taken away.
-    const std::string as_all_others =
+    // The superuser may write everywhere, so the capability is removed.
+    const std::string as_regular_user =
         ::geteuid() != 0 ? "exec \"$0\" \"$@\"" : "exec setpriv --bounding-set=-dac_override \"$0\" \"$@\"";
     const auto run = [&](const std::string& out) {
-        return RunningFase::by_shell(as_all_others, {"run", "stack", "--steps", "1", "--record", out}).wait();
+        return RunningFase::by_shell(as_regular_user, {"run", "stack", "--steps", "1", "--record", out}).wait();
     };
-    if (run(folder / "first").code != 0) GTEST_SKIP() << "skipped: cannot run with less than the superuser's rights";
+    if (run(folder / "first").code != 0) GTEST_SKIP() << "skipped: cannot drop the rights of the superuser";
     write_file(file, "old");
     ::chmod(file.c_str(), 0400);
     expect_error_line(run(file), 3, "found a read-only file");
@@ -95,7 +95,7 @@ TEST(Recording, AReadOnlyPlaceIsRefused) {
     EXPECT_EQ(read_file(file), "old");
 }
 
-TEST(Recording, AFullDiskIsToldWithWhatWasWritten) {
+TEST(Recording, AFullDiskIsReportedWithTheWrittenAmount) {
     expect_error_line(run_fase(with(long_run, {"/dev/full"})), 3, "/dev/full");
     const TemporaryFolder folder;
     const std::string file = folder / "r.faserec";
@@ -109,7 +109,7 @@ TEST(Recording, AFullDiskIsToldWithWhatWasWritten) {
     EXPECT_NE(outcome.err.find(std::to_string(player->frames()) + " frames"), std::string::npos) << outcome.err;
 }
 
-TEST(Recording, ASignalEndsTheRunWithTheRecordingWhole) {
+TEST(Recording, ASignalEndsTheRunWithACompleteRecording) {
     for (const int signal : {SIGINT, SIGTERM}) {
         const TemporaryFolder folder;
         const std::string file = folder / "r.faserec";
@@ -131,9 +131,9 @@ TEST(Recording, ASignalEndsTheRunWithTheRecordingWhole) {
     }
 }
 
-TEST(Recording, ASecondSignalEndsItAtOnce) {
+TEST(Recording, ASecondSignalEndsItImmediately) {
     const TemporaryFolder folder;
-    // So many bodies that the first signal finds a step in hand.
+    // Many bodies, so that the first signal arrives during a step.
     RunningFase running({"run", "pile", "--count", "4000", "--steps", "100000", "--record", folder / "r.faserec"});
     ASSERT_TRUE(wait_until([&] { return bytes_of(folder / "r.faserec.part") > 0; }));
     running.send(SIGINT);
@@ -143,12 +143,12 @@ TEST(Recording, ASecondSignalEndsItAtOnce) {
     EXPECT_LT(Clock::now() - begin, std::chrono::seconds(1));
 }
 
-TEST(Recording, AKillLosesNothingThatWasFlushed) {
+TEST(Recording, AKillLosesNoFlushedFrame) {
     for (int kill = 0; kill < 20; ++kill) {
         const TemporaryFolder folder;
         const std::string file = folder / "r.faserec", part = file + ".part";
         RunningFase running(with(long_run, {file}));
-        // Each time at another place of the file.
+        // Kills at another file position each time.
         ASSERT_TRUE(wait_until([&] { return bytes_of(part) > 500u * static_cast<unsigned>(kill + 1); }));
         std::uint64_t seen = 0;
         {
@@ -165,12 +165,12 @@ TEST(Recording, AKillLosesNothingThatWasFlushed) {
         EXPECT_FALSE(player->complete());
         EXPECT_GE(player->frames(), seen);
         EXPECT_EQ(read_all(*player), player->frames());
-        // What is broken is at most the block that was being written.
+        // Only the block that was being written may be damaged.
         EXPECT_LT(player->file_bytes() - player->good_bytes(), 65536u);
     }
 }
 
-TEST(Recording, TwoToOneNameAreRefused) {
+TEST(Recording, ASecondRecorderOfOneFileIsRefused) {
     const TemporaryFolder folder;
     const std::string file = folder / "r.faserec";
     RunningFase running(with(long_run, {file}));

@@ -1,4 +1,4 @@
-/// `fase run`: its figures, its refusals, the same hash however it is run.
+/// Tests `fase run`: its figures, its refusals, and that the hash does not depend on settings.
 #include "tests/cli/fase_program.hpp"
 
 namespace fase::cli {
@@ -40,17 +40,17 @@ TEST(Run, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_GE(number_at(ms, "worst"), number_at(ms, "mean"));
 }
 
-TEST(Run, PrintsATableForPeople) {
+TEST(Run, PrintsATable) {
     const Outcome outcome = run_fase({"run", "stack", "--count", "5", "--steps", "30"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* line :
-         {"scene      stack\n", "bodies     6, 5 of them dynamic", "steps      30, 0.5 s simulated", "ms a step  ",
-          "stages     refresh ", "contacts   5 at most", "memory     ", "hash       "}) {
+         {"scene      stack\n", "bodies     6, 5 of them dynamic", "steps      30, 0.5 s simulated", "ms/step    ",
+          "stages     refresh ", "contacts   at most 5", "memory     ", "hash       "}) {
         EXPECT_NE(outcome.out.find(line), std::string::npos) << line << " is not in\n" << outcome.out;
     }
 }
 
-TEST(Run, SecondsBecomeSteps) {
+TEST(Run, ConvertsSecondsToSteps) {
     const auto steps = [](std::vector<std::string> more) {
         std::vector<std::string> arguments{"run", "stack", "--count", "1", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -63,7 +63,7 @@ TEST(Run, SecondsBecomeSteps) {
     EXPECT_EQ(steps({"--steps", "0"}), 0);
 }
 
-TEST(Run, TheHashIsTheSameForAnyThreadsAndStructure) {
+TEST(Run, TheHashDoesNotDependOnThreadsAndStructure) {
     const std::vector<std::string> run{"run", "pile", "--count", "150", "--steps", "120"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.begin(), run.begin(), run.end());
@@ -80,7 +80,7 @@ TEST(Run, TheHashIsTheSameForAnyThreadsAndStructure) {
     EXPECT_NE(with({"--sub-steps", "5"}), hash);
 }
 
-TEST(Run, AFileRunsAsTheKindThatItWasMadeFrom) {
+TEST(Run, AFileRunsLikeTheKindThatGeneratedIt) {
     const TemporaryFolder folder;
     const std::string kind = hash_of({"run", "pile", "--count", "60", "--steps", "60"});
     for (const char* name : {"pile.glb", "pile.gltf"}) {
@@ -89,7 +89,7 @@ TEST(Run, AFileRunsAsTheKindThatItWasMadeFrom) {
     }
 }
 
-TEST(Run, RecordingLeavesTheHashAsItIs) {
+TEST(Run, RecordingDoesNotChangeTheHash) {
     const TemporaryFolder folder;
     const std::vector<std::string> run{"run", "castle", "--count", "100", "--steps", "20"};
     std::vector<std::string> recorded = run;
@@ -97,16 +97,16 @@ TEST(Run, RecordingLeavesTheHashAsItIs) {
     EXPECT_EQ(hash_of(recorded), hash_of(run));
 }
 
-TEST(Run, SceneAndStructureThatAreNotThereAreNamed) {
+TEST(Run, RefusesUnknownScenesAndStructuresByName) {
     expect_error_line(run_fase({"run", "no_such.glb"}), 3,
-                      "no_such.glb: found no such file, need a .gltf, .glb or .wad file, or one of castle");
+                      "no_such.glb: no such file; expected a .gltf, .glb or .wad file, or one of castle");
     expect_error_line(run_fase({"run", "stack", "--structure", "oak"}), 2,
-                      "--structure: found \"oak\", need auto or one of brute_force");
+                      "--structure: found \"oak\"; expected auto or one of brute_force");
     expect_error_line(run_fase({"run", "stack", "--seconds", "1e9"}), 2, "--seconds: found ");
     expect_error_line(run_fase({"run", "/"}), 2, "/");
 }
 
-TEST(Run, ABrokenSceneEndsWithOneLineAndNothingWritten) {
+TEST(Run, ABrokenSceneGivesOneErrorLineAndNoFile) {
     const TemporaryFolder folder;
     const std::string scene = folder / "scene.glb", recording = folder / "r.faserec";
     ASSERT_EQ(run_fase({"generate", "stack", "--count", "2", "-o", scene}).code, 0);
@@ -122,8 +122,7 @@ TEST(Run, ABrokenSceneEndsWithOneLineAndNothingWritten) {
     EXPECT_FALSE(std::filesystem::exists(recording + ".part"));
 }
 
-TEST(Run, NoProgressOnAPipeWhenOnlyResultsAreWanted) {
-    // Longer than the 2 s after which a line would be due.
+TEST(Run, PrintsNoProgressToAPipeWithJson) {
     const Outcome outcome = run_fase({"run", "pile", "--count", "100", "--steps", "1", "--json"});
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(scene::parse_json(outcome.out));

@@ -1,4 +1,4 @@
-/// `fase view` as a program: pages that open alone, and a server that answers nobody but this machine's browser.
+/// Tests `fase view` as a program: self-contained pages, and a server that only answers browsers on this machine.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using record::TemporaryFolder;
 using record::write_file;
 using Clock = std::chrono::steady_clock;
 
-/// The program, started with these arguments, its output in a pipe.
+/// The running program with its output in a pipe.
 class Program {
 public:
     explicit Program(std::vector<std::string> arguments) {
@@ -59,7 +59,7 @@ public:
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    /// Reads what it prints until `word` is there or it ends.
+    /// Reads its output until `word` appears or the program ends.
     const std::string& read_until(const std::string& word) {
         char bytes[1024];
         while (text_.find(word) == text_.npos) {
@@ -70,7 +70,7 @@ public:
         return text_;
     }
     void send(int signal) const { ::kill(id_, signal); }
-    /// Its exit code; -1 when a signal ended it.
+    /// Returns its exit code; -1 if a signal ended it.
     int wait() {
         int status = 0;
         ::waitpid(id_, &status, 0);
@@ -108,13 +108,13 @@ public:
     [[nodiscard]] bool connected() const { return connected_; }
     void send(const std::string& text) const { (void)::send(socket_, text.data(), text.size(), MSG_NOSIGNAL); }
     void end_sending() const { ::shutdown(socket_, SHUT_WR); }
-    /// All that comes until the other side closes, or the time is over.
-    [[nodiscard]] std::string read_all(std::chrono::milliseconds most = 15s) const {
+    /// Reads until the other side closes, or the time limit.
+    [[nodiscard]] std::string read_all(std::chrono::milliseconds limit = 15s) const {
         std::string text;
-        const auto until = Clock::now() + most;
+        const auto deadline = Clock::now() + limit;
         char bytes[65536];
         for (;;) {
-            const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
+            const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
             pollfd waiting{socket_, POLLIN, 0};
             if (left <= 0 || ::poll(&waiting, 1, static_cast<int>(left)) <= 0) return text + "<no end>";
             const ssize_t count = ::recv(socket_, bytes, sizeof bytes, 0);
@@ -141,7 +141,7 @@ protected:
     }
     ~ViewServer() override {
         if (!program_) return;
-        EXPECT_NE(answer("GET", "/viewer.css").find("200 OK"), std::string::npos) << "the server did not live on";
+        EXPECT_NE(answer("GET", "/viewer.css").find("200 OK"), std::string::npos) << "the server has ended";
         const auto begin = Clock::now();
         program_->send(SIGINT);
         EXPECT_EQ(program_->wait(), 130);
@@ -171,7 +171,7 @@ protected:
     int port_ = 0;
 };
 
-TEST_F(ViewServer, GivesThePageAndTheRecording) {
+TEST_F(ViewServer, ServesThePageAndTheRecording) {
     const std::string page = answer("GET", "/");
     EXPECT_EQ(code_of(page), 200);
     EXPECT_NE(page.find("Content-Type: text/html"), page.npos);
@@ -192,7 +192,7 @@ TEST_F(ViewServer, GivesThePageAndTheRecording) {
     EXPECT_EQ(code_of(answer("GET", "/nothing")), 404);
 }
 
-TEST_F(ViewServer, SendsItsSafetyHeadersWithEveryAnswer) {
+TEST_F(ViewServer, SendsItsSecurityHeadersWithEveryAnswer) {
     for (const std::string& text : {answer("GET", "/"), answer("GET", "/recording"), answer("GET", "/nothing"),
                                     answer("POST", "/"), answer("GET", "/..")}) {
         EXPECT_NE(text.find("X-Content-Type-Options: nosniff"), text.npos) << text.substr(0, 400);
@@ -201,7 +201,7 @@ TEST_F(ViewServer, SendsItsSafetyHeadersWithEveryAnswer) {
     }
 }
 
-TEST_F(ViewServer, KeepsAConnectionForMoreRequests) {
+TEST_F(ViewServer, KeepsAConnectionOpenForMoreRequests) {
     const Connection connection(port_);
     const std::string request = "GET /viewer.css HTTP/1.1\r\n" + host() + "\r\n";
     connection.send(request + request + "GET /nothing HTTP/1.1\r\n" + host() + "Connection: close\r\n\r\n");
@@ -249,7 +249,7 @@ TEST_F(ViewServer, AnswersOnlyGetAndHead) {
               400);
 }
 
-TEST_F(ViewServer, GivesNoFileOfTheDisk) {
+TEST_F(ViewServer, ServesNoOtherFileOfTheDisk) {
     for (const std::string target :
          {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2fetc/passwd", "//etc/passwd", "/etc/passwd",
           "/\\..\\etc", "/%00", "/recording%00.html", "http://evil.example/", "http://localhost/", "*", "recording",
@@ -281,7 +281,7 @@ TEST_F(ViewServer, RefusesMalformedHeads) {
     }
 }
 
-TEST_F(ViewServer, DropsAHeadThatDoesNotCome) {
+TEST_F(ViewServer, ClosesAConnectionWithoutACompleteHead) {
     const auto begin = Clock::now();
     const Connection silent(port_), half(port_), dripping(port_);
     half.send("GET / HTTP/1.1\r\nHost: local");
@@ -315,8 +315,8 @@ TEST_F(ViewServer, AnswersAThousandAndFirstClient) {
     EXPECT_LT(Clock::now() - begin, 3s);
 }
 
-TEST_F(ViewServer, DropsAClientThatNeverReads) {
-    // Much more than the buffers of the system hold.
+TEST_F(ViewServer, ClosesAConnectionThatNeverReads) {
+    // Much more than the system buffers.
     write_file(file_, read_file(file_) + std::string(std::size_t(64) << 20, 'x'));
     std::vector<Connection> lazy;
     for (int i = 0; i < 20; ++i) {
@@ -325,16 +325,16 @@ TEST_F(ViewServer, DropsAClientThatNeverReads) {
     }
     EXPECT_EQ(code_of(answer("GET", "/")), 200);
     std::this_thread::sleep_for(6s);
-    EXPECT_LT(lazy[0].read_all().size(), std::size_t(64) << 20);  // it was ended early
+    EXPECT_LT(lazy[0].read_all().size(), std::size_t(64) << 20);  // the connection was closed early
 }
 
-TEST_F(ViewServer, TellsWhenTheFileWentOrShrank) {
+TEST_F(ViewServer, ReportsAMissingOrShrunkFile) {
     const std::string whole = read_file(file_);
     std::filesystem::remove(file_);
-    const std::string gone = answer("GET", "/recording");
-    EXPECT_EQ(code_of(gone), 404);
-    EXPECT_NE(body_of(gone).find("cannot be read any more"), gone.npos);
-    EXPECT_NE(body_of(gone).find(file_), gone.npos);
+    const std::string missing = answer("GET", "/recording");
+    EXPECT_EQ(code_of(missing), 404);
+    EXPECT_NE(body_of(missing).find("can no longer be read"), missing.npos);
+    EXPECT_NE(body_of(missing).find(file_), missing.npos);
     std::filesystem::create_directory(file_);
     EXPECT_EQ(code_of(answer("GET", "/recording")), 404);
     std::filesystem::remove(file_);
@@ -359,7 +359,7 @@ TEST_F(ViewServer, EndsOnSigtermWith143) {
     program_.reset();
 }
 
-TEST(View, WritesOnePageThatRefersToNothingElse) {
+TEST(View, WritesOnePageWithoutExternalReferences) {
     const TemporaryFolder folder;
     ASSERT_TRUE(record_run(folder / "run.faserec", ArtificialRun(40), 100));
     Program program({"view", folder / "run.faserec", "--html", folder / "page.html"});
@@ -373,7 +373,7 @@ TEST(View, WritesOnePageThatRefersToNothingElse) {
     std::size_t scripts = 0;
     for (std::size_t at = 0; (at = page.find("</script", at)) != page.npos; ++at) ++scripts;
     EXPECT_EQ(scripts, 2u);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);  // nothing else was left
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);  // no other file
 }
 
 TEST(View, WritesAnAnimation) {
@@ -384,7 +384,7 @@ TEST(View, WritesAnAnimation) {
     EXPECT_EQ(read_file(folder / "run.glb").substr(0, 4), "glTF");
 }
 
-TEST(View, RefusesWhatIsNoRecordingAndPlacesThatCannotBe) {
+TEST(View, RefusesOtherFilesAndUnwritablePaths) {
     const TemporaryFolder folder;
     ASSERT_TRUE(record_run(folder / "run.faserec", ArtificialRun(5), 10));
     write_file(folder / "text", "hello");
@@ -406,7 +406,7 @@ TEST(View, RefusesWhatIsNoRecordingAndPlacesThatCannotBe) {
     EXPECT_EQ(bytes.substr(0, 7), "FASEREC");
 }
 
-TEST(View, OpensADamagedRecordingAsFarAsItIsGoodAndSaysSo) {
+TEST(View, OpensTheValidPartOfADamagedRecordingAndWarns) {
     const TemporaryFolder folder;
     ASSERT_TRUE(record_run(folder / "run.faserec", ArtificialRun(40), 200));
     const std::string bytes = read_file(folder / "run.faserec");
@@ -414,7 +414,7 @@ TEST(View, OpensADamagedRecordingAsFarAsItIsGoodAndSaysSo) {
     Program program({"view", folder / "cut.faserec", "--html", folder / "page.html"});
     EXPECT_EQ(program.run(), 0) << program.text();
     EXPECT_NE(program.text().find("fase: warning: "), std::string::npos);
-    EXPECT_NE(program.text().find("frames are there"), std::string::npos) << program.text();
+    EXPECT_NE(program.text().find("frames are readable"), std::string::npos) << program.text();
     EXPECT_TRUE(std::filesystem::exists(folder / "page.html"));
 }
 
