@@ -1,4 +1,4 @@
-// A box falls on the ground, comes to rest and goes to sleep.
+// A box falls to the ground, comes to rest and falls asleep.
 #include <cstdio>
 
 #include "fase/world/world.hpp"
@@ -9,9 +9,9 @@ int main() {
 
     // The ground: everything below y = 0. Y is up; lengths are in metres.
     const auto ground = world->add_body({.kind = fase::BodyKind::Static}, fase::HalfSpace{});
-    // A cube of 1 m, 5 m up. Its mass comes from its size and the collider's density, 1000 kg/m³ unless told otherwise.
+    // A cube of 1 m, 5 m up. Its mass follows from its size and the collider's density, 1000 kg/m³ by default.
     const auto box = world->add_body({.position = {0, 5, 0}}, fase::Box{.half = {0.5f, 0.5f, 0.5f}});
-    if (!ground || !box) return std::puts("a body was refused"), 1;
+    if (!ground || !box) return std::puts("a body was rejected"), 1;
 
     while (world->body(*box)->awake && world->time() < 10) {
         if (const auto report = world->step(); !report) return std::puts(report.error().text().c_str()), 1;

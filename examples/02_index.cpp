@@ -1,4 +1,4 @@
-// Things with names, found by where they are: all of Fase that a program needs for it.
+// A spatial index of named values, without the rest of Fase.
 #include <cstdio>
 #include <string>
 
@@ -13,7 +13,7 @@ int main() {
 
     yard.pairs([](std::string& a, std::string& b) { std::printf("%s touches %s\n", a.c_str(), b.c_str()); });
     if (const auto hit = yard.cast_ray({{12, 0.5, 1.5}, {-1, 0, 0}, 100}))
-        std::printf("looking left: the %s, %.1f m away\n", yard.value(hit->id).c_str(), hit->at);
+        std::printf("looking left: the %s, %.1f m away\n", yard.value(hit->id).c_str(), hit->distance);
 
     yard.move(ball, {{5, 0, 5}, {6, 1, 6}});
     yard.commit();

@@ -1,4 +1,5 @@
-// Broad phase and narrow phase: boxes tell which pairs may touch, shapes tell which do; and all again by brute force.
+// Broad phase and narrow phase: boxes give the pairs that may touch, exact shapes the pairs that do. A tree and brute
+// force give the same result.
 #include <cstdio>
 
 #include "fase/broad/brute_force.hpp"
@@ -12,14 +13,14 @@ struct Thing {
     fase::Pose pose;
 };
 
-/// 300 balls, capsules and boxes at all angles, in a room of 24 m.
+/// Returns a sphere, capsule or box with a random pose, in a room of 24 m.
 Thing random_thing(fase::Random& random, int kind) {
-    const auto within = [&](float reach) { return random.between(-reach, reach); };
+    const auto within = [&](float limit) { return random.between(-limit, limit); };
     const double x = within(12), y = within(12), z = within(12);
-    const fase::Quat turn = fase::normalized(fase::Quat{within(1), within(1), within(1), within(1)});
-    if (kind == 0) return {fase::Sphere{.radius = 0.8f}, {{x, y, z}, turn}};
-    if (kind == 1) return {fase::Capsule{.radius = 0.4f, .half_length = 1.2f}, {{x, y, z}, turn}};
-    return {fase::Box{.half = {1.2f, 0.8f, 0.4f}}, {{x, y, z}, turn}};
+    const fase::Quat rotation = fase::normalized(fase::Quat{within(1), within(1), within(1), within(1)});
+    if (kind == 0) return {fase::Sphere{.radius = 0.8f}, {{x, y, z}, rotation}};
+    if (kind == 1) return {fase::Capsule{.radius = 0.4f, .half_length = 1.2f}, {{x, y, z}, rotation}};
+    return {fase::Box{.half = {1.2f, 0.8f, 0.4f}}, {{x, y, z}, rotation}};
 }
 
 struct Count {
@@ -31,7 +32,7 @@ template <class Structure> Count count_pairs() {
     fase::Random random(3);
     for (int i = 0; i < 300; ++i) {
         const Thing thing = random_thing(random, i % 3);
-        room.insert(fase::bounds(thing.shape, thing.pose), thing);  // at this level everything is a box
+        room.insert(fase::bounds(thing.shape, thing.pose), thing);  // the broad phase sees only boxes
     }
     room.commit();
     Count count;

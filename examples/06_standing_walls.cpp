@@ -1,4 +1,4 @@
-// A maze that never changes: trees fitted to its walls once, then only asked. Who sees whom across it?
+// A static maze: trees are built once for its walls, then queried for lines of sight.
 #include <cstdio>
 #include <vector>
 
@@ -7,7 +7,7 @@
 #include "fase/core/random.hpp"
 #include "fase/query/batch.hpp"
 
-/// Walls of 1 m, along x or z, on a grid of 40 by 40 places; about one place in three has one.
+/// Returns walls of 1 m, along x or z, in about one third of the cells of a 40 by 40 grid.
 std::vector<fase::broad::Move> maze() {
     fase::Random random(11);
     std::vector<fase::broad::Move> walls;
@@ -22,28 +22,28 @@ std::vector<fase::broad::Move> maze() {
     return walls;
 }
 
-template <fase::broad::Structure Tree> int count_sight(const std::vector<fase::broad::Move>& walls) {
+template <fase::broad::Structure Tree> int count_visible(const std::vector<fase::broad::Move>& walls) {
     Tree tree;
     tree.build(walls);
     fase::Random random(12);
-    const auto place = [&] { return fase::Vec3d{random.between(0, 40), 1.6, random.between(0, 40)}; };
-    std::vector<fase::Ray> sights;
+    const auto point = [&] { return fase::Vec3d{random.between(0, 40), 1.6, random.between(0, 40)}; };
+    std::vector<fase::Ray> lines_of_sight;
     for (int i = 0; i < 1000; ++i) {
-        const fase::Vec3d from = place(), way = place() - from;
-        const double distance = fase::length(way);
-        sights.push_back({from, fase::to_float(way * (1 / distance)), static_cast<float>(distance)});
+        const fase::Vec3d from = point(), path = point() - from;
+        const double distance = fase::length(path);
+        lines_of_sight.push_back({from, fase::to_float(path * (1 / distance)), static_cast<float>(distance)});
     }
     std::vector<std::uint8_t> blocked;
     const auto tasks = fase::make_thread_runner(2);
-    fase::query::any_hits(*tasks, tree, sights, blocked);
-    int seen = 0;
-    for (const std::uint8_t wall_between : blocked) seen += wall_between == 0 ? 1 : 0;
-    std::printf("%-9s %zu walls, %d of 1000 see each other\n", Tree::info.name.data(), tree.size(), seen);
-    return seen;
+    fase::query::any_hits(*tasks, tree, lines_of_sight, blocked);
+    int visible = 0;
+    for (const std::uint8_t is_blocked : blocked) visible += is_blocked == 0 ? 1 : 0;
+    std::printf("%-9s %zu walls, %d of 1000 see each other\n", Tree::info.name.data(), tree.size(), visible);
+    return visible;
 }
 
 int main() {
     const auto walls = maze();
-    const int by_faces = count_sight<fase::broad::Bsp>(walls), fitted = count_sight<fase::broad::KdTree>(walls);
-    return by_faces == fitted ? 0 : 1;
+    const int bsp = count_visible<fase::broad::Bsp>(walls), kd_tree = count_visible<fase::broad::KdTree>(walls);
+    return bsp == kd_tree ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Sleepers behind a door: no pair of two that rest is looked for, and the tree knows where all rest.
+// Sleeping monsters behind a door: pairs of two sleepers are skipped, and so are branches where all sleep.
 #include <cstdio>
 #include <vector>
 
@@ -11,11 +11,11 @@ using Level = fase::Index<Monster>;
 
 fase::Aabb box_of(const Monster& m) { return {{m.x - 0.6f, 0, m.z - 0.6f}, {m.x + 0.6f, 2, m.z + 0.6f}}; }
 
-void tell(const char* when, Level& level) {
-    int all = 0, wanted = 0;
+void print(const char* when, Level& level) {
+    int all = 0, awake = 0;
     level.pairs([&](Monster&, Monster&) { ++all; });
-    level.awake_pairs([&](Monster&, Monster&) { ++wanted; });
-    std::printf("%-24s %4d pairs touch, %4d of them wanted\n", when, all, wanted);
+    level.awake_pairs([&](Monster&, Monster&) { ++awake; });
+    std::printf("%-24s %4d pairs touch, %4d of them awake\n", when, all, awake);
 }
 
 int main() {
@@ -33,18 +33,18 @@ int main() {
         level.commit();
     };
     walk_to(-3);
-    tell("the door is shut:", level);
+    print("the door is shut:", level);
 
     walk_to(-1);
-    tell("the player at the door:", level);
+    print("the player at the door:", level);
 
-    // The door opens: those within 4 m of it wake.
+    // The door opens: wake the monsters within 4 m of it.
     level.overlapping(fase::query::SphereRegion({-1, 1, 10}, 4),
                       [&](Level::Id id, Monster&) { level.set_awake(id, true); });
     level.commit();
-    tell("those near it wake:", level);
+    print("those near it wake:", level);
 
     for (const auto id : sleepers) level.set_awake(id, true);
     level.commit();
-    tell("all awake:", level);
+    print("all awake:", level);
 }

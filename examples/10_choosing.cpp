@@ -1,4 +1,4 @@
-// One scene, many structures: the same pairs, the same hits; choose by the shape of the world and how often it changes.
+// One scene in several structures, chosen by name: all give the same pairs and the same hits.
 #include <cstdio>
 
 #include "fase/broad/any_structure.hpp"
@@ -21,6 +21,6 @@ int main() {
         structure->find_pairs(pairs);
         const auto hit = fase::query::nearest_hit(*structure, ray);
         if (!hit) return 1;
-        std::printf("%-16s %zu pairs, box %u after %.2f m\n", name, pairs.size(), hit->proxy, hit->at);
+        std::printf("%-16s %zu pairs, box %u after %.2f m\n", name, pairs.size(), hit->proxy, hit->distance);
     }
 }

@@ -1,4 +1,4 @@
-// The yard of ghosts as a world: bodies, contacts and impulses are its business; who meets and parts is told each step.
+// The ghosts of example 04 as a World: it finds contacts, applies impulses and reports events.
 #include <cstdio>
 #include <optional>
 
@@ -8,12 +8,12 @@
 constexpr float yard = 16;
 constexpr fase::Material smooth{.friction = 0, .restitution = 1};
 
-struct Told {
-    std::size_t met = 0, parted = 0, hits = 0;
+struct Totals {
+    std::size_t begun = 0, ended = 0, hits = 0;
     std::uint64_t hash = 0;
 };
 
-std::optional<Told> run(const char* structure) {
+std::optional<Totals> run(const char* structure) {
     auto world = fase::World::create({.gravity = {0, 0, 0}, .sleep = false}, {.structure = structure});
     if (!world) return std::puts(world.error().text().c_str()), std::nullopt;
     for (const float side : {-1.0f, 1.0f}) {
@@ -29,22 +29,22 @@ std::optional<Told> run(const char* structure) {
         ghost.linear_velocity = {random.between(-3, 3), 0, random.between(-3, 3)};
         if (!world->add_body(ghost, fase::Sphere{.radius = 0.5f}, {.material = smooth})) return std::nullopt;
     }
-    Told told;
+    Totals totals;
     while (world->steps() < 300) {
         if (!world->step()) return std::nullopt;
-        told.met += world->events().contacts_begun.size();
-        told.parted += world->events().contacts_ended.size();
-        told.hits += world->events().hits.size();
+        totals.begun += world->events().contacts_begun.size();
+        totals.ended += world->events().contacts_ended.size();
+        totals.hits += world->events().hits.size();
     }
-    told.hash = world->hash();
-    return told;
+    totals.hash = world->hash();
+    return totals;
 }
 
 int main() {
     const auto tree = run("quadtree"), brute = run("brute_force");
     if (!tree || !brute) return 1;
-    std::printf("quadtree:    %zu met, %zu parted, %zu hits\n", tree->met, tree->parted, tree->hits);
-    std::printf("brute force: %zu met, %zu parted, %zu hits\n", brute->met, brute->parted, brute->hits);
-    std::printf("the worlds are %s\n", tree->hash == brute->hash ? "equal to the last bit" : "different");
+    std::printf("quadtree:    %zu contacts begun, %zu ended, %zu hits\n", tree->begun, tree->ended, tree->hits);
+    std::printf("brute force: %zu contacts begun, %zu ended, %zu hits\n", brute->begun, brute->ended, brute->hits);
+    std::printf("the worlds are %s\n", tree->hash == brute->hash ? "identical to the last bit" : "different");
     return tree->hash == brute->hash ? 0 : 1;
 }

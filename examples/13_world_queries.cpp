@@ -1,4 +1,4 @@
-// Questions to a world: what a ray meets, what is in the way of a moved shape, what is near, inside and in view.
+// World queries: ray cast, shape cast, overlap, nearest bodies, frustum.
 #include <array>
 #include <cstdio>
 
@@ -13,20 +13,21 @@ int main() {
     const auto ball = world->add_body({.position = {0, 1.5, 0}}, fase::Sphere{.radius = 0.3f});
     if (!ball) return std::puts(ball.error().text().c_str()), 1;
 
-    // Nothing needs a step first: queries answer for the world as it stands.
-    const fase::QueryFilter not_me{.ignored = *ball};
+    // Queries see the current state of the world; no step is needed first.
+    const fase::QueryFilter not_ball{.ignored = *ball};
     const fase::Ray ahead{{0, 1.5, 0}, {0, 0, -1}, 100};
-    const auto hit = fase::cast_ray(*world, ahead, not_me);
-    if (!hit) return std::puts(hit.error().text().c_str()), 1;  // a ray that cannot be meant
-    if (*hit) std::printf("the ray meets body %u after %.2f m\n", (*hit)->body.index, static_cast<double>((*hit)->at));
+    const auto hit = fase::cast_ray(*world, ahead, not_ball);
+    if (!hit) return std::puts(hit.error().text().c_str()), 1;  // the ray is invalid
+    if (*hit)
+        std::printf("the ray hits body %u after %.2f m\n", (*hit)->body.index, static_cast<double>((*hit)->distance));
 
-    // The ball needs room: carried along, it stops a radius short of the crates.
-    const auto way = fase::cast_shape(*world, fase::Sphere{0.3f}, {{0, 1.5, 0}, {}}, {0, 0, -1}, 100, not_me);
-    if (way && *way)
-        std::printf("the ball gets %.2f m far, normal z = %.0f\n", static_cast<double>((*way)->at),
-                    static_cast<double>((*way)->normal.z));
+    // A shape cast of the ball: it stops one radius before the crates.
+    const auto cast = fase::cast_shape(*world, fase::Sphere{0.3f}, {{0, 1.5, 0}, {}}, {0, 0, -1}, 100, not_ball);
+    if (cast && *cast)
+        std::printf("the ball moves %.2f m, normal z = %.0f\n", static_cast<double>((*cast)->distance),
+                    static_cast<double>((*cast)->normal.z));
 
-    // Lists are appended to a buffer of yours, in an order that depends on nothing but the world.
+    // Lists are appended to the caller's buffer, in a deterministic order.
     std::vector<fase::Found> found;
     static_cast<void>(fase::overlapping(*world, fase::Sphere{1.2f}, {{0, 4.5, -10}, {}}, {}, found));
     std::printf("%zu crates within 1.2 m of the top one's middle\n", found.size());
@@ -40,7 +41,7 @@ int main() {
     const auto frustum = fase::frustum_of(view_projection);
     std::vector<fase::Found> seen, partly;
     if (frustum) static_cast<void>(fase::seen_by(*world, *frustum, {}, seen, &partly));
-    std::printf("the camera sees %zu of %zu bodies, %zu of them in part\n", seen.size(), world->body_count(),
+    std::printf("the camera sees %zu of %zu bodies, %zu of them partly\n", seen.size(), world->body_count(),
                 partly.size());
-    return *hit && *way && found.size() == 2 && near.size() == 2 && seen.size() == 6 ? 0 : 1;
+    return *hit && *cast && found.size() == 2 && near.size() == 2 && seen.size() == 6 ? 0 : 1;
 }

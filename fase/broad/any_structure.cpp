@@ -1,4 +1,4 @@
-/// Each call visits the variant once and goes on in the structure's own type.
+/// Dispatches each call once on the variant, then runs the code of the concrete structure.
 #include "fase/broad/any_structure.hpp"
 
 #include "fase/broad/find_pairs.hpp"
@@ -14,8 +14,8 @@ Result<AnyStructure> AnyStructure::named(std::string_view name) {
         known = true;
     });
     if (!known) {
-        return Error{Status::BadArgument, "structure", "found \"" + std::string(name) + "\", need one of " + names(),
-                     ""};
+        return Error{Status::BadArgument, "structure",
+                     "found \"" + std::string(name) + "\"; expected one of " + names(), ""};
     }
     return found;
 }
@@ -43,7 +43,7 @@ void AnyStructure::insert(std::span<const Move> boxes) {
 void AnyStructure::move(TaskRunner* tasks, std::span<const Move> boxes) {
     std::visit(
         [&]<class S>(S& s) {
-            if constexpr (MovesMany<S>) {
+            if constexpr (MovesInBulk<S>) {
                 s.move(tasks, boxes);
             } else {
                 for (const Move& m : boxes) s.move(m.proxy, m.box);
@@ -63,7 +63,7 @@ void AnyStructure::insert(std::span<const Proxy> proxies, std::span<const Aabb> 
 void AnyStructure::move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
     std::visit(
         [&]<class S>(S& s) {
-            if constexpr (MovesMany<S>) {
+            if constexpr (MovesInBulk<S>) {
                 s.move(tasks, proxies, by_proxy);
             } else {
                 for (const Proxy p : proxies) s.move(p, by_proxy[p]);
@@ -95,7 +95,7 @@ void AnyStructure::set_awake(std::span<const Proxy> proxies, bool awake) {
 void AnyStructure::build(std::span<const Move> boxes) {
     std::visit(
         [&]<class S>(S& s) {
-            if constexpr (BuildsAtOnce<S>) {
+            if constexpr (BuildsInBulk<S>) {
                 s.build(boxes);
             } else {
                 s.clear();
@@ -124,14 +124,14 @@ void AnyStructure::convert_to(AnyStructure other) {
     structure_ = std::move(other.structure_);
 }
 
-void AnyStructure::build_still(std::span<const Move> boxes) {
-    const bool taken = std::visit(
+void AnyStructure::build_static(std::span<const Move> boxes) {
+    const bool built = std::visit(
         [&]<class S>(S& s) {
-            if constexpr (BuildsStill<S>) s.build_still(boxes);
-            return BuildsStill<S>;
+            if constexpr (BuildsStatic<S>) s.build_static(boxes);
+            return BuildsStatic<S>;
         },
         structure_);
-    if (!taken) build(boxes);
+    if (!built) build(boxes);
 }
 
 void AnyStructure::commit() {
@@ -179,17 +179,17 @@ void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> query_
 void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const {
     if (size() == 0 || other.size() == 0) return;
     if (tasks.threads() == 1) return find_pairs_between(other, out);
-    const bool asks = size() < other.size();
+    const bool is_smaller = size() < other.size();
     std::vector<Move> query_boxes;
-    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); }, asks ? structure_ : other.structure_);
-    (asks ? other : *this).find_pairs_of(tasks, query_boxes, {}, out);
+    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); }, is_smaller ? structure_ : other.structure_);
+    (is_smaller ? other : *this).find_pairs_of(tasks, query_boxes, {}, out);
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
     std::visit(
         [&]<class S>(const S& mine) {
-            if (const S* same_kind = std::get_if<S>(&other.structure_)) {
-                broad::find_pairs_between(mine, *same_kind, out);
+            if (const S* same_type = std::get_if<S>(&other.structure_)) {
+                broad::find_pairs_between(mine, *same_type, out);
                 return;
             }
             std::vector<Move> query_boxes;

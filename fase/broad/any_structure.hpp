@@ -1,5 +1,5 @@
 #pragma once
-/// A structure chosen at run time by its name.
+/// A structure chosen by name at run time.
 #include <span>
 #include <variant>
 
@@ -11,29 +11,29 @@
 
 namespace fase::broad {
 
-/// A region for which AnyStructure has no walk of its own. (A lambda fits a template better than a FunctionRef: without
-/// the requirement the general walk would be taken for every region.)
+/// A region for which AnyStructure has no precompiled traversal. Overload resolution prefers the template for a lambda
+/// over a FunctionRef; without this constraint it would use the generic traversal for every region.
 template <class R>
 concept OtherRegion =
     Region<R> && !std::same_as<R, BoxRegion> && !std::same_as<R, FrustumRegion> && !std::same_as<R, Everything>;
 
-/// One structure of the registry behind calls that hand over many boxes at once: one branch a call, none a box. The
-/// contracts are those of the concept Structure; default: the default structure, empty. Copies are deep.
+/// One structure of the registry behind batch calls: one dispatch per call, none per box. The contracts are those of
+/// the concept Structure. The default is an empty default structure. Copies are deep.
 class AnyStructure {
 public:
-    /// The structure with that name, empty. BadArgument with all names when there is none.
+    /// Returns the structure with this name, empty; for an unknown name BadArgument with all known names.
     [[nodiscard]] static Result<AnyStructure> named(std::string_view name);
-    /// "brute_force, dynamic_bvh, …": for help and error texts.
+    /// All names, "brute_force, sweep_and_prune, …", for help and error texts.
     [[nodiscard]] static std::string names();
 
     AnyStructure();
 
     void insert(std::span<const Move> boxes);
-    /// No proxy twice.
+    /// Moves stored boxes; each proxy at most once.
     void move(std::span<const Move> boxes) { move(nullptr, boxes); }
-    /// The same, shared among threads by structures that can.
+    /// The same; structures with parallel moves use several threads.
     void move(TaskRunner& tasks, std::span<const Move> boxes) { move(&tasks, boxes); }
-    /// The same for boxes that stand in a list by proxy.
+    /// The same for boxes that are stored in an array by proxy.
     void insert(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
     void move(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) { move(nullptr, proxies, by_proxy); }
     void move(TaskRunner& tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
@@ -42,48 +42,48 @@ public:
     void erase(std::span<const Proxy> proxies);
     void set_awake(std::span<const Proxy> proxies, bool awake);
     void clear();
-    /// Replaces all that is stored by boxes that are awake, and commits.
+    /// Replaces all stored boxes by these, all awake, and commits.
     void build(std::span<const Move> boxes);
-    /// The same for boxes that are likely to stay where they are; what is stored and found is no different.
-    void build_still(std::span<const Move> boxes);
-    /// Puts all that is stored into `other`, which is empty, and takes its place; awake or not as it is. Commits.
+    /// The same for boxes that seldom move; stored boxes and results are the same.
+    void build_static(std::span<const Move> boxes);
+    /// Moves all boxes into `other`, which must be empty, and becomes it. Keeps the awake flags. Commits. O(n log n).
     void convert_to(AnyStructure other);
-    /// To be called after changes and before anything const.
+    /// Applies pending changes. Call after changes and before any const function.
     void commit();
-    /// The same, shared among threads by structures that can; it makes no difference to what is stored.
+    /// The same; structures with a parallel commit use several threads. The result is the same.
     void commit(TaskRunner& tasks);
 
-    /// Appends each pair of stored boxes once, smaller proxy first; sort them for an order that does not depend on the
-    /// structure.
+    /// Appends each overlapping pair of stored boxes once, smaller proxy first. The order depends on the structure;
+    /// sort the pairs for a fixed order.
     void find_pairs(std::vector<Pair>& out) const;
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// Appends each pair of which one box is awake once, as find_pairs() does.
+    /// Appends each pair with at least one awake box once, as find_pairs() does.
     void find_awake_pairs(std::vector<Pair>& out) const;
-    /// Appends for each asker its pairs with stored boxes; see broad::find_pairs_of for what `is_query` does. With
-    /// tasks, many askers that are stored here cost little more than find_pairs().
+    /// Appends the pairs of each query box with stored boxes; see broad::find_pairs_of() for the meaning of `is_query`.
+    /// With tasks, many query boxes that are stored here cost little more than find_pairs().
     void find_pairs_of(std::span<const Move> query_boxes, std::vector<Pair>& out) const;
     void find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;
     void find_pairs_of(TaskRunner& tasks, std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;
-    /// Appends each pair of a box stored here and one stored in `other` (which may be of another kind); cheapest for
-    /// two trees of one kind. Proxies of both count as one numbering.
+    /// Appends each overlapping pair of a box stored here and one stored in `other`, which may be a structure of
+    /// another type; cheapest for two trees of the same type. Both share one numbering of proxies.
     void find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const;
-    /// The same pairs; several threads share out the boxes of the one that has fewer.
+    /// The same pairs; the boxes of the smaller structure are divided among threads.
     void find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const;
-    /// Appends the proxies of the stored boxes that overlap `box`, in the structure's own order.
+    /// Appends the proxies of the stored boxes that overlap `box`, in the structure's order.
     void overlapping(const Aabb& box, std::vector<Proxy>& out) const;
-    /// As Structure::traverse: `visit(proxy, box)` returns false to stop. Compiled once for these regions: an indirect
-    /// call for each box that is visited, none for nodes.
+    /// As Structure::traverse(): `visit(proxy, box)` returns false to stop. Compiled once for these regions: one
+    /// indirect call per visited box, none per node.
     void traverse(const BoxRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
     void traverse(const FrustumRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
     void traverse(const Everything& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const;
-    /// For any other region: an indirect call a node more.
+    /// For any other region: one more indirect call per node.
     template <OtherRegion R, class Visit> void traverse(const R& region, Visit&& visit) const {
         const auto touches = [&region](const Aabb& box) { return region.touches(box); };
         traverse_any(AnyRegion(touches, region.bounds()), visit);
     }
-    /// As broad::nearest_first(), compiled once: an indirect call for each box that is visited, none for nodes.
+    /// As broad::nearest_first(), compiled once: one indirect call per visited box, none per node.
     void nearest_first(const RayMeasure& measure, float limit,
                        FunctionRef<float(Proxy, const Aabb&, float)> visit) const;
     void nearest_first(const PointMeasure& measure, float limit,
@@ -99,9 +99,9 @@ public:
     [[nodiscard]] std::size_t size() const;
     /// Memory in use, spare capacity included.
     [[nodiscard]] std::size_t bytes() const;
-    /// "" when all is well; else what is not. O(n).
+    /// Describes the first broken invariant; "" when none is broken. O(n).
     [[nodiscard]] std::string broken_invariant() const;
-    /// Appends the boxes of the structure's cells; none when it has none to draw.
+    /// Appends the boxes of the structure's cells; nothing for structures without cells.
     void cells(std::vector<DrawnCell>& out) const;
 
 private:
@@ -112,7 +112,7 @@ private:
     void move(TaskRunner* tasks, std::span<const Move> boxes);
     void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
 
-    /// A region of a type that is not known here.
+    /// A type-erased region.
     class AnyRegion {
     public:
         AnyRegion(FunctionRef<bool(const Aabb&)> touches, const Aabb& bounds) : touches_(touches), bounds_(bounds) {}

@@ -1,4 +1,4 @@
-/// Rules from measurements, and the move into another structure.
+/// The rules, derived from measurements, and the conversion to another structure.
 #include "fase/broad/auto_structure.hpp"
 
 #include <algorithm>
@@ -7,29 +7,30 @@
 namespace fase::broad {
 namespace {
 
-// Where trying all costs as much as sorting into rows, in boxes. Rows pay for each level of sizes, so that the more
-// sizes differ, the longer trying all wins; on a plane they are short. Who is only asked does not find pairs of its
-// own.
-constexpr double usual = 110, on_a_plane = 60, of_many_sizes = 130, asked = 400;
-constexpr std::size_t always_few = 50, never_few = 160;  // of those that find pairs, whatever the boxes
-constexpr float many_sizes = 4;
+// Break-even counts: the number of boxes at which brute force costs as much as a row grid. A row grid has a cost per
+// size level, so brute force wins longer when sizes differ; on a plane the rows are short. A set that only answers
+// queries does not find pairs among its own boxes.
+constexpr double typical_break_even = 110, flat_break_even = 60, mixed_sizes_break_even = 130, queried_break_even = 400;
+// For rays the wide tree is faster from 8 boxes on, for boxes and views from about a hundred.
+constexpr double query_break_even = 8;
+// Outside these counts the sizes do not matter for sets that find pairs.
+constexpr std::size_t always_few = 50, never_few = 160;
+constexpr float mixed_sizes = 4;
 
-double middle_of(const BoxStatistics& statistics) {
-    if (statistics.use == BoxUse::IsAsked) return asked;
-    return statistics.size_spread >= many_sizes ? of_many_sizes : statistics.flat ? on_a_plane : usual;
+double break_even(const BoxStatistics& statistics) {
+    if (statistics.use == BoxUse::AnswersQueries) return query_break_even;
+    if (statistics.use == BoxUse::IsQueried) return queried_break_even;
+    return statistics.size_spread >= mixed_sizes ? mixed_sizes_break_even
+           : statistics.flat                     ? flat_break_even
+                                                 : typical_break_even;
 }
 
-/// Whether sizes and places do not matter.
+/// Returns whether the count alone decides, without sizes and positions.
 bool count_decides(std::size_t boxes, BoxUse use) {
-    return use == BoxUse::IsAsked || boxes <= always_few || boxes >= never_few;
+    return use != BoxUse::FindsPairs || boxes <= always_few || boxes >= never_few;
 }
 
-float longest_side(const Aabb& box) {
-    const Vec3 side = extent(box);
-    return std::max({side.x, side.y, side.z});
-}
-
-BoxStatistics look_at(const AnyStructure& structure, BoxUse use) {
+BoxStatistics stored_statistics(const AnyStructure& structure, BoxUse use) {
     if (count_decides(structure.size(), use)) return {.boxes = structure.size(), .use = use};
     std::vector<Move> boxes;
     structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
@@ -54,34 +55,35 @@ BoxStatistics statistics_of(std::span<const Move> boxes, BoxUse use) {
         corners.hi = max(corners.hi, m.box.lo);
     }
     if (sides.size() < 2) return found;
-    const auto at = [&](std::size_t place) {
-        const auto nth = sides.begin() + static_cast<std::ptrdiff_t>(place);
+    const auto nth_smallest = [&](std::size_t n) {
+        const auto nth = sides.begin() + static_cast<std::ptrdiff_t>(n);
         std::nth_element(sides.begin(), nth, sides.end());
         return *nth;
     };
-    const float most = at(sides.size() * 49 / 50), middle = at(sides.size() / 2);
-    found.size_spread = middle > 0 ? most / middle : (most > 0 ? Aabb::infinity : 1);
+    const float percentile_98 = nth_smallest(sides.size() * 49 / 50), median = nth_smallest(sides.size() / 2);
+    found.size_spread = median > 0 ? percentile_98 / median : (percentile_98 > 0 ? Aabb::infinity : 1);
     const Vec3 spread = extent(corners);
-    found.flat = std::min({spread.x, spread.y, spread.z}) <= 2 * middle;
+    found.flat = std::min({spread.x, spread.y, spread.z}) <= 2 * median;
     return found;
 }
 
-std::string_view reason_for(std::string_view structure) {
-    if (structure == BruteForce::info.name) return "few boxes: to try all costs less than to sort them";
-    if (structure == RowGrid::info.name) return "many boxes: sorted into rows, each meets only its neighbours";
+std::string_view choice_reason(std::string_view structure) {
+    if (structure == BruteForce::info.name) return "few boxes: testing all pairs costs less than sorting";
+    if (structure == WideBvh::info.name) return "queries: visits few wide nodes, nearest first";
+    if (structure == RowGrid::info.name) return "many boxes: sorted into rows, only neighbours are tested";
     return {};
 }
 
-std::string_view auto_structure(const BoxStatistics& statistics, std::string_view current) {
-    const double middle = middle_of(statistics);
-    const double share = current.empty() ? 1 : current == BruteForce::info.name ? 1.15 : 0.85;
-    return static_cast<double>(statistics.boxes) < share * middle ? BruteForce::info.name : RowGrid::info.name;
+std::string_view choose_structure(const BoxStatistics& statistics, std::string_view current) {
+    const double hysteresis = current.empty() ? 1 : current == BruteForce::info.name ? 1.15 : 0.85;
+    if (static_cast<double>(statistics.boxes) < hysteresis * break_even(statistics)) return BruteForce::info.name;
+    return statistics.use == BoxUse::AnswersQueries ? WideBvh::info.name : RowGrid::info.name;
 }
 
-void suit(AnyStructure& structure, BoxUse use, bool looks_closely) {
-    if (!looks_closely && !count_decides(structure.size(), use)) return;
-    const std::string_view suited = auto_structure(look_at(structure, use), structure.info().name);
-    if (suited != structure.info().name) structure.convert_to(*AnyStructure::named(suited));
+void update_auto_structure(AnyStructure& structure, BoxUse use, bool inspect_sizes) {
+    if (!inspect_sizes && !count_decides(structure.size(), use)) return;
+    const std::string_view best = choose_structure(stored_statistics(structure, use), structure.info().name);
+    if (best != structure.info().name) structure.convert_to(*AnyStructure::named(best));
 }
 
 }  // namespace fase::broad

@@ -1,5 +1,5 @@
 #pragma once
-/// The automatic choice: which structure suits a set of boxes, and why.
+/// The automatic choice of the structure for a set of boxes, with the reason.
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -8,36 +8,40 @@
 
 namespace fase::broad {
 
-/// What a set of boxes is for: to find the pairs of all, or to be asked by some others.
-enum class BoxUse : std::uint8_t { FindsPairs, IsAsked };
+/// Use of a set of boxes.
+enum class BoxUse : std::uint8_t {
+    FindsPairs,      ///< finds the pairs among its boxes
+    IsQueried,       ///< finds the pairs of its boxes with other boxes, as the sets of resting bodies do
+    AnswersQueries,  ///< answers rays, views, overlaps and nearest neighbours
+};
 
-/// What is known of a set of boxes that a structure is chosen by. All but the first and the last are looked at only
-/// where they matter: for about a hundred boxes that find pairs.
+/// Statistics of a set of boxes from which its structure is chosen. `size_spread` and `flat` are computed only where
+/// they affect the choice: for sets of about a hundred boxes that find pairs.
 struct BoxStatistics {
     std::size_t boxes = 0;
-    /// The longest side that one box in fifty exceeds, to the one that half of them exceed.
+    /// Ratio of the 98th percentile to the median of the longest sides of the boxes.
     float size_spread = 1;
-    bool flat = false;  ///< the lower corners lie within a slab twice as thick as most boxes
+    bool flat = false;  ///< the lower corners are in a slab at most twice as thick as the median box
     BoxUse use = BoxUse::FindsPairs;
 };
-/// Of boxes that are about to be stored, or are.
+/// Computes the statistics of boxes, stored or about to be stored.
 [[nodiscard]] BoxStatistics statistics_of(std::span<const Move> boxes, BoxUse use);
 
-/// A structure and the reason for it, both words that last.
-struct AutoStructure {
+/// A structure by name, and the reason for the choice; both texts have static lifetime.
+struct StructureChoice {
     std::string_view structure, reason;
 };
 
-/// Which structure answers fastest, by name, from what was measured of all of them (docs/benchmarks.md). `current` is
-/// kept where it would win or lose by little, so that a count that goes up and down does not change the structure each
-/// time; empty: there is none.
-[[nodiscard]] std::string_view auto_structure(const BoxStatistics& statistics, std::string_view current);
-/// Why it would be chosen, in words that last; empty for one that never is.
-[[nodiscard]] std::string_view reason_for(std::string_view structure);
+/// Returns the name of the fastest structure, by measurements of all structures (docs/benchmarks.md). Hysteresis: keeps
+/// `current` when the difference is small, so that a varying count does not change the structure each time; empty:
+/// there is no current structure.
+[[nodiscard]] std::string_view choose_structure(const BoxStatistics& statistics, std::string_view current);
+/// Returns the reason for choosing a structure, with static lifetime; empty for structures that are never chosen.
+[[nodiscard]] std::string_view choice_reason(std::string_view structure);
 
-/// Puts what is stored into the structure that suits it, awake or not as it is; commits when it does. To be called
-/// before each commit: O(1), but when the structure changes, and for sets of about a hundred boxes with `looks_closely`
-/// (now and then), where sizes and places matter. The pairs that are found do not depend on it.
-void suit(AnyStructure& structure, BoxUse use, bool looks_closely = false);
+/// Converts `structure` to the fastest structure for its boxes, keeps the awake flags, and commits when it converts.
+/// Call before each commit. O(1), except on a conversion and for sets of about a hundred boxes with `inspect_sizes`,
+/// where sizes and positions affect the choice; pass true now and then. The found pairs do not depend on it.
+void update_auto_structure(AnyStructure& structure, BoxUse use, bool inspect_sizes = false);
 
 }  // namespace fase::broad

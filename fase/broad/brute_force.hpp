@@ -1,62 +1,63 @@
 #pragma once
-/// Every box against every box: the judge of all other structures.
+/// Tests every box against every box: the reference for all other structures.
 #include <array>
 
 #include "fase/broad/boxes/box_scan.hpp"
+#include "fase/broad/search/partitioned_search.hpp"
 #include "fase/core/detail/check.hpp"
+#include "fase/core/no_index.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
-/// Boxes in six dense arrays, those that are awake first, without any other order. O(1) a change, O(n) a query, n²/2
-/// tests for all pairs, 4 to 16 at once; nothing to go wrong. Below some hundred boxes nothing is faster. Changes show
-/// at once; commit() does nothing.
+/// Boxes in six dense arrays, the awake ones first, otherwise unordered. A change is O(1), a query O(n), all pairs n²/2
+/// tests, 4 to 16 at a time. The fastest structure below some hundred boxes. Changes take effect immediately; commit()
+/// does nothing.
 class BruteForce {
 public:
     static constexpr StructureInfo info{"brute_force", "dense arrays, every box is tested against every other",
                                         "folklore"};
 
-    /// Takes the place of the first that rests, which goes to the end.
+    /// The box takes the index of the first resting box, which moves to the end.
     void insert(Proxy p, const Aabb& box) {
-        if (p >= where_.size()) where_.resize(p + std::size_t{1}, nowhere);
-        FASE_ASSERT(where_[p] == nowhere);
+        if (p >= where_.size()) where_.resize(p + std::size_t{1}, no_index);
+        FASE_ASSERT(where_[p] == no_index);
         const std::size_t count = boxes_.size();
         boxes_.resize(count + 1);
         if (awake_ < count) move_to(count, awake_);
         put(awake_++, p, box);
     }
     void move(Proxy p, const Aabb& box) {
-        FASE_ASSERT(p < where_.size() && where_[p] != nowhere);
+        FASE_ASSERT(p < where_.size() && where_[p] != no_index);
         boxes_.put(where_[p], p, box);
     }
-    /// The last that is awake takes the place of an erased one that is awake, and the last of all the place that is
-    /// then free.
+    /// The last awake box moves to the index of an erased awake box; then the last box moves to the free index.
     void erase(Proxy p) {
-        FASE_ASSERT(p < where_.size() && where_[p] != nowhere);
-        std::size_t hole = where_[p];
-        if (hole < awake_) {
-            move_to(hole, --awake_);
-            hole = awake_;
+        FASE_ASSERT(p < where_.size() && where_[p] != no_index);
+        std::size_t free = where_[p];
+        if (free < awake_) {
+            move_to(free, --awake_);
+            free = awake_;
         }
         const std::size_t last = boxes_.size() - 1;
-        if (hole != last) move_to(hole, last);
+        if (free != last) move_to(free, last);
         boxes_.resize(last);
-        where_[p] = nowhere;
+        where_[p] = no_index;
     }
     void clear() {
         where_.clear();
         boxes_.resize(0);
         awake_ = 0;
     }
-    /// Changes places with the first that rests, or the last that is awake.
+    /// Swaps the box with the first resting or the last awake one.
     void set_awake(Proxy p, bool awake) {
-        FASE_ASSERT(p < where_.size() && where_[p] != nowhere);
+        FASE_ASSERT(p < where_.size() && where_[p] != no_index);
         if (is_awake(p) == awake) return;
         if (!awake) --awake_;
-        const std::size_t here = where_[p];
+        const std::size_t at = where_[p];
         const Proxy other = boxes_.proxy(awake_);
-        const Aabb mine = boxes_.box(here), its = boxes_.box(awake_);
-        put(here, other, its);
+        const Aabb mine = boxes_.box(at), its = boxes_.box(awake_);
+        put(at, other, its);
         put(awake_, p, mine);
         if (awake) ++awake_;
     }
@@ -81,11 +82,11 @@ public:
         }
     }
 
-    /// n²/2 tests.
+    /// Appends all pairs, by n²/2 tests.
     void find_pairs(std::vector<Pair>& out) const { scan_behind(boxes_.view(), 0, boxes_.size(), out); }
-    /// Each that is awake against those behind it, which are the other awake ones and all that rest.
+    /// Tests each awake box against the boxes after it: the other awake ones and all resting ones.
     void find_awake_pairs(std::vector<Pair>& out) const { scan_behind(boxes_.view(), 0, awake_, out); }
-    /// The same pairs, in the same order, found by several threads.
+    /// Same as find_pairs(out), on several threads, with the same order of the pairs.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
 
     template <class Visit> void for_each_leaf(Visit&& visit) const {
@@ -100,10 +101,10 @@ public:
     [[nodiscard]] std::string broken_invariant() const;
 
 private:
-    static constexpr std::uint32_t nowhere = 0xffffffff;
     BoxColumns boxes_;
-    std::size_t awake_ = 0;             // so many of the first are awake
-    std::vector<std::uint32_t> where_;  // by proxy: its place, or nowhere
+    std::size_t awake_ = 0;                   // the first awake_ boxes are awake
+    std::vector<std::uint32_t> where_;        // by proxy: its index, or no_index
+    mutable ThreadLocalPairBuffers buffers_;  // scratch of find_pairs() with tasks
 
     void put(std::size_t at, Proxy p, const Aabb& box) {
         boxes_.put(at, p, box);

@@ -1,14 +1,14 @@
 #pragma once
-/// Sorting out what is inside a region, what is partly, and what is not, whole branches at a time.
+/// Culling: classifies boxes as inside, partly inside or outside a region, branch by branch.
 #include <span>
 
 #include "fase/broad/search/nearest_first.hpp"
 
 namespace fase::broad {
 
-/// Calls `take(proxies, whole)` until each stored box that touches the region was handed over once: with `whole` those
-/// that the region contains, without it the others. One call may bring a single proxy or a branch full of them; the
-/// span is valid for the length of the call.
+/// Calls `take(proxies, inside)` so that each stored box that touches the region is passed once. `inside`: the region
+/// contains these boxes completely. One call passes a single proxy or all proxies of a branch; the span is valid during
+/// the call.
 template <Searchable S, SolidRegion R, class Take> void cull(const S& structure, const R& region, Take&& take) {
     if constexpr (requires { structure.cull(region, take); }) {
         structure.cull(region, take);

@@ -1,4 +1,4 @@
-/// How the tree follows its boxes: what changes at once, what waits for commit(), and when all is built anew.
+/// Updates of the tree: immediate changes, changes deferred to commit(), and rebuilds.
 #include "fase/broad/dynamic_bvh.hpp"
 
 #include <algorithm>
@@ -9,13 +9,8 @@
 namespace fase::broad {
 namespace {
 
-float longest_side(const Aabb& box) {
-    const Vec3 e = extent(box);
-    return std::max(e.x, std::max(e.y, e.z));
-}
-
-/// NaN, the motion of a box that was none in between, counts as none.
-float limited(float value, float limit) {
+/// Clamps to [-limit, limit]; NaN, from the motion of a box that was NaN, gives 0.
+float clamped(float value, float limit) {
     return value < -limit ? -limit : value > limit ? limit : value == value ? value : 0;
 }
 
@@ -24,56 +19,56 @@ float limited(float value, float limit) {
 void DynamicBvh::insert(Proxy p, const Aabb& box) {
     FASE_ASSERT(p < leaf_bit);
     if (p >= entries_.size()) entries_.resize(p + std::size_t{1});
-    FASE_ASSERT(entries_[p].place == Place::Nowhere);
+    FASE_ASSERT(entries_[p].place == Place::None);
     entries_[p].box = box;
     entries_[p].awake = true;
     if (is_regular(box)) {
-        put_in_list(pending_, p, Place::Pending);
+        add_to_list(pending_, p, Place::Pending);
     } else {
-        put_in_list(apart_, p, Place::Apart);
+        add_to_list(unbounded_, p, Place::Unbounded);
     }
 }
 
 void DynamicBvh::move(Proxy p, const Aabb& box) {
-    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::Nowhere);
+    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::None);
     Entry& entry = entries_[p];
     const Aabb before = entry.box;
     entry.box = box;
-    if (entry.leaving) return;
+    if (entry.escaped) return;
     if (entry.place == Place::Pending) {
         if (is_regular(box)) return;
-        take_from_list(pending_, p);
-        put_in_list(apart_, p, Place::Apart);
+        remove_from_list(pending_, p);
+        add_to_list(unbounded_, p, Place::Unbounded);
         return;
     }
     const bool stays =
         entry.place == Place::Tree ? contains(nodes_[entry.where].box, box) && !is_empty(box) : !is_regular(box);
     if (stays) return;
-    entry.leaving = true;
-    leaving_.push_back({p, box.lo - before.lo});
+    entry.escaped = true;
+    escaped_.push_back({p, box.lo - before.lo});
 }
 
 void DynamicBvh::erase(Proxy p) {
-    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::Nowhere);
+    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::None);
     Entry& entry = entries_[p];
     switch (entry.place) {
-        case Place::Nowhere: return;
-        case Place::Pending: take_from_list(pending_, p); break;
-        case Place::Apart: take_from_list(apart_, p); break;
+        case Place::None: return;
+        case Place::Pending: remove_from_list(pending_, p); break;
+        case Place::Unbounded: remove_from_list(unbounded_, p); break;
         case Place::Tree: remove_leaf(entry.where); break;
     }
     resting_ -= entry.awake ? 0 : 1;
-    entry.place = Place::Nowhere;
-    entry.leaving = false;  // what leaving_ still says of it is skipped
-    marks_old_ = true;
+    entry.place = Place::None;
+    entry.escaped = false;  // its entry in escaped_ is skipped
+    marks_stale_ = true;
 }
 
 void DynamicBvh::set_awake(Proxy p, bool awake) {
-    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::Nowhere);
+    FASE_ASSERT(p < entries_.size() && entries_[p].place != Place::None);
     if (entries_[p].awake == awake) return;
     entries_[p].awake = awake;
     awake ? --resting_ : ++resting_;
-    marks_old_ = true;
+    marks_stale_ = true;
 }
 
 void DynamicBvh::clear() {
@@ -81,12 +76,12 @@ void DynamicBvh::clear() {
     free_.clear();
     entries_.clear();
     pending_.clear();
-    apart_.clear();
-    leaving_.clear();
+    unbounded_.clear();
+    escaped_.clear();
     node_awake_.clear();
     leaf_count_ = 0;
     resting_ = 0;
-    marks_old_ = false;
+    marks_stale_ = false;
     changes_ = 0;
     cost_when_built_ = 0;
 }
@@ -98,14 +93,14 @@ void DynamicBvh::build(std::span<const Move> boxes) {
 }
 
 void DynamicBvh::commit() {
-    if (!leaving_.empty() || !pending_.empty()) {
-        follow_boxes();
-        marks_old_ = true;
+    if (!escaped_.empty() || !pending_.empty()) {
+        apply_moves();
+        marks_stale_ = true;
     }
-    if (std::exchange(marks_old_, false)) mark_awake_nodes();
+    if (std::exchange(marks_stale_, false)) mark_awake_nodes();
 }
 
-/// One pass from the bottom; nothing at all while everything is awake.
+/// Marks the ancestors of awake leaves. Clears the marks while all boxes are awake.
 void DynamicBvh::mark_awake_nodes() {
     node_awake_.clear();
     if (resting_ == 0 || leaf_count_ == 0) return;
@@ -119,97 +114,98 @@ void DynamicBvh::mark_awake_nodes() {
     }
 }
 
-void DynamicBvh::follow_boxes() {
-    sort_out_leaving();
+void DynamicBvh::apply_moves() {
+    filter_escaped();
     if (pending_.size() > leaf_count_ / 2) {
-        leaving_.clear();
+        escaped_.clear();
         rebuild();
         return;
     }
-    changes_ += leaving_.size() + pending_.size();
-    if (static_cast<float>(leaving_.size()) > settings_.crowd * static_cast<float>(leaf_count_) + 8) {
-        for (const Leaving& one : leaving_) {
+    changes_ += escaped_.size() + pending_.size();
+    if (static_cast<float>(escaped_.size()) > settings_.refit_share * static_cast<float>(leaf_count_) + 8) {
+        for (const Escaped& one : escaped_) {
             const Entry& entry = entries_[one.proxy];
-            nodes_[entry.where].box = grown(entry.box, settings_.crowd_margin * longest_side(entry.box));
+            nodes_[entry.where].box = enlarged(entry.box, settings_.refit_margin * longest_side(entry.box));
         }
         refit_all();
     } else {
-        for (const Leaving& one : leaving_) {
+        for (const Escaped& one : escaped_) {
             remove_leaf(entries_[one.proxy].where);
             insert_leaf(one.proxy, fattened(one));
         }
     }
-    leaving_.clear();
+    escaped_.clear();
     for (const Proxy p : pending_) insert_leaf(p, entries_[p].box);
     pending_.clear();
-    rebuild_if_spoilt();
+    rebuild_if_degraded();
 }
 
-/// Afterwards leaving_ names only boxes that are in the tree and may stay there; each once, its flag lowered.
-void DynamicBvh::sort_out_leaving() {
+/// Reduces escaped_ to boxes that are in the tree and remain there, each once; moves the others to the right list.
+/// Clears their flags.
+void DynamicBvh::filter_escaped() {
     std::size_t kept = 0;
-    for (const Leaving one : leaving_) {
+    for (const Escaped one : escaped_) {
         Entry& entry = entries_[one.proxy];
-        if (!entry.leaving) continue;
-        entry.leaving = false;
+        if (!entry.escaped) continue;
+        entry.escaped = false;
         if (is_regular(entry.box)) {
             if (entry.place == Place::Tree) {
-                leaving_[kept++] = one;
+                escaped_[kept++] = one;
             } else {
-                take_from_list(apart_, one.proxy);
-                put_in_list(pending_, one.proxy, Place::Pending);
+                remove_from_list(unbounded_, one.proxy);
+                add_to_list(pending_, one.proxy, Place::Pending);
             }
         } else if (entry.place == Place::Tree) {
             remove_leaf(entry.where);
-            put_in_list(apart_, one.proxy, Place::Apart);
+            add_to_list(unbounded_, one.proxy, Place::Unbounded);
         }
     }
-    leaving_.resize(kept);
+    escaped_.resize(kept);
 }
 
-/// The exact box, its margin, and what it will sweep if it goes on as it does; a leap counts as one side length.
-Aabb DynamicBvh::fattened(const Leaving& leaving) const {
-    const Aabb& box = entries_[leaving.proxy].box;
+/// Returns the fat AABB: the exact box with its predicted sweep and a margin. The sweep is clamped to one side length.
+Aabb DynamicBvh::fattened(const Escaped& escaped) const {
+    const Aabb& box = entries_[escaped.proxy].box;
     const float side = longest_side(box);
-    const Vec3 ahead{limited(settings_.motion * leaving.motion.x, side),
-                     limited(settings_.motion * leaving.motion.y, side),
-                     limited(settings_.motion * leaving.motion.z, side)};
+    const Vec3 ahead{clamped(settings_.motion * escaped.motion.x, side),
+                     clamped(settings_.motion * escaped.motion.y, side),
+                     clamped(settings_.motion * escaped.motion.z, side)};
     const Aabb swept = merge(box, {box.lo + ahead, box.hi + ahead});
-    return grown(swept, settings_.margin * side);
+    return enlarged(swept, settings_.margin * side);
 }
 
-void DynamicBvh::put_in_list(std::vector<Proxy>& list, Proxy p, Place place) {
+void DynamicBvh::add_to_list(std::vector<Proxy>& list, Proxy p, Place place) {
     entries_[p].where = static_cast<std::uint32_t>(list.size());
     entries_[p].place = place;
     list.push_back(p);
 }
 
-void DynamicBvh::take_from_list(std::vector<Proxy>& list, Proxy p) {
+void DynamicBvh::remove_from_list(std::vector<Proxy>& list, Proxy p) {
     const std::uint32_t at = entries_[p].where;
     list[at] = list.back();
     entries_[list[at]].where = at;
     list.pop_back();
 }
 
-/// All inner nodes, children before parents, each rotated when that pays.
+/// Refits all inner nodes, children before parents, and rotates each where that reduces the surface.
 void DynamicBvh::refit_all() {
-    order_.clear();
+    refit_order_.clear();
     LocalStack<Slot, 64> open;
     if (leaf_count_ > 1) open.push(root);
     while (!open.empty()) {
         const Slot at = open.pop(), left = nodes_[at].link;
-        order_.push_back(at);
+        refit_order_.push_back(at);
         if (!nodes_[left + 1].is_leaf()) open.push(left + 1);
         if (!nodes_[left].is_leaf()) open.push(left);
     }
-    for (std::size_t i = order_.size(); i-- > 0;) {
-        Node& node = nodes_[order_[i]];
+    for (std::size_t i = refit_order_.size(); i-- > 0;) {
+        Node& node = nodes_[refit_order_[i]];
         node.box = merged_children(node);
-        rotate(order_[i]);
+        rotate(refit_order_[i]);
     }
 }
 
-/// A tree of all that is in the tree or waits for it, with exact boxes as leaves, in depth-first order.
+/// Rebuilds the tree from all stored and pending boxes, with exact boxes as leaves, in depth-first order.
 void DynamicBvh::rebuild() {
     items_.clear();
     Aabb bounds;
@@ -252,11 +248,11 @@ void DynamicBvh::rebuild() {
     cost_when_built_ = cost() / static_cast<double>(leaf_count_);
 }
 
-/// Looks at the cost once for every size()/2 changes, so that looking costs O(1) a change.
-void DynamicBvh::rebuild_if_spoilt() {
+/// Checks the cost once per size()/2 changes, so that the check costs O(1) per change.
+void DynamicBvh::rebuild_if_degraded() {
     if (leaf_count_ < 16 || changes_ < leaf_count_ / 2) return;
     changes_ = 0;
-    if (cost() / static_cast<double>(leaf_count_) > settings_.worst_growth * cost_when_built_) rebuild();
+    if (cost() / static_cast<double>(leaf_count_) > settings_.max_growth * cost_when_built_) rebuild();
 }
 
 }  // namespace fase::broad

@@ -1,5 +1,6 @@
 #pragma once
-/// All pairs of one structure, of two, and of a list of boxes against a structure: the best way that each one offers.
+/// Pairs within a structure, between two structures, and of query boxes with a structure. Uses the fastest method that
+/// each structure offers.
 #include <span>
 
 #include "fase/broad/search/pair_sink.hpp"
@@ -9,47 +10,47 @@
 
 namespace fase::broad {
 
-/// A structure that shares the search among threads: the same pairs as find_pairs(out), in an order that does not
-/// depend on how many threads there are.
+/// Finds its pairs on several threads: the same pairs as find_pairs(out), in an order that does not depend on the
+/// number of threads.
 template <class S>
 concept FindsOwnPairsInParallel = Structure<S> && requires(const S& c, TaskRunner& tasks, std::vector<Pair>& out) {
     c.find_pairs(tasks, out);
 };
 
-/// A structure that shares commit() among threads: what it answers afterwards, and the order, do not depend on them.
+/// Commits on several threads. Later results and their order do not depend on the number of threads.
 template <class S>
 concept CommitsInParallel = Structure<S> && requires(S s, TaskRunner& tasks) {
     s.commit(tasks);
 };
 
-/// A structure that finds the pairs with another of its kind faster than one query a box can.
+/// Finds the pairs with another structure of the same type faster than one query per box.
 template <class S>
-concept FindsPairsWithItsKind = Structure<S> && requires(const S& c, const S& other, std::vector<Pair>& out) {
+concept FindsPairsWithSameKind = Structure<S> && requires(const S& c, const S& other, std::vector<Pair>& out) {
     c.find_pairs_with(other, out);
 };
 
-/// A structure that answers askers faster than one query an asker can; the contract is that of broad::find_pairs_of().
+/// Finds the pairs of query boxes faster than one query per box; the contract is that of broad::find_pairs_of().
 template <class S>
-concept AnswersAskers = Structure<S> && requires(const S& c, std::span<const Move> query_boxes,
-                                                 std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
+concept AnswersQueryBoxes = Structure<S> && requires(const S& c, std::span<const Move> query_boxes,
+                                                     std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
     c.find_pairs_of(query_boxes, is_query, out);
 };
 
-/// Appends, for each asker, a pair with every stored box that its box overlaps; never with itself, should it be stored.
-/// An asker's box need not be the one that is stored under its proxy, nor need it be stored at all; no proxy asks
-/// twice. When two askers are both stored here, their pair is found from both sides and so appears twice, unless
-/// `is_query` (by proxy; not 0: asks, here or in another call; proxies past its end do not) marks them: then only the
-/// smaller asks. The structure's own way, or one query an asker.
+/// Appends, for each query box, a pair with every stored box that it overlaps, never with itself. A query box may
+/// differ from the box stored under its proxy, and its proxy need not be stored. Each proxy occurs at most once. When
+/// two query boxes are both stored here, their pair is found from both sides and appears twice, unless `is_query` marks
+/// them: then only the smaller proxy reports it. `is_query` is indexed by proxy; not 0: a query box, of this or another
+/// call; proxies past its end are none. Uses the method of the structure, or one query per box.
 template <Structure S>
 void find_pairs_of(const S& structure, std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                    std::vector<Pair>& out) {
-    if constexpr (AnswersAskers<S>) return structure.find_pairs_of(query_boxes, is_query, out);
+    if constexpr (AnswersQueryBoxes<S>) return structure.find_pairs_of(query_boxes, is_query, out);
     PairSink sink(out);
     for (const Move& query_box : query_boxes) {
         const Proxy p = query_box.proxy;
         structure.traverse(BoxRegion{query_box.box}, [&](Proxy q, const Aabb&) {
-            const bool asked_by_q = q < p && q < is_query.size() && is_query[q] != 0;
-            if (p != q && !asked_by_q) sink.add(p, q);
+            const bool reported_by_q = q < p && q < is_query.size() && is_query[q] != 0;
+            if (p != q && !reported_by_q) sink.add(p, q);
             return true;
         });
     }
@@ -59,7 +60,7 @@ void find_pairs_of(const S& structure, std::span<const Move> query_boxes, std::v
     find_pairs_of(structure, query_boxes, {}, out);
 }
 
-/// All that is stored, appended in the structure's own order.
+/// Appends all stored boxes in the structure's order.
 template <Structure S> void stored_boxes(const S& structure, std::vector<Move>& out) {
     out.reserve(out.size() + structure.size());
     structure.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
@@ -68,8 +69,8 @@ template <Structure S> void stored_boxes(const S& structure, std::vector<Move>& 
     });
 }
 
-/// Appends every overlapping pair of stored boxes once, smaller proxy first, in no order that counts. One query a box,
-/// unless the structure knows better.
+/// Appends every overlapping pair of stored boxes once, smaller proxy first, in unspecified order. Uses the method of
+/// the structure, or one query per box.
 template <Structure S> void find_pairs(const S& structure, std::vector<Pair>& out) {
     if constexpr (FindsOwnPairs<S>) {
         structure.find_pairs(out);
@@ -85,10 +86,10 @@ template <Structure S> void find_pairs(const S& structure, std::vector<Pair>& ou
     }
 }
 
-/// Appends every overlapping pair of which one is awake, once, smaller proxy first. The structure's own way, or one
-/// query for each box that is awake.
+/// Appends every overlapping pair with at least one awake box once, smaller proxy first. Uses the method of the
+/// structure, or one query per awake box.
 template <Structure S> void find_awake_pairs(const S& structure, std::vector<Pair>& out) {
-    if constexpr (HoldsAwake<S>) {
+    if constexpr (FindsAwakePairs<S>) {
         structure.find_awake_pairs(out);
     } else {
         PairSink sink(out);
@@ -103,11 +104,11 @@ template <Structure S> void find_awake_pairs(const S& structure, std::vector<Pai
     }
 }
 
-/// Asks for one asker after the other, as find_pairs_of without tasks does; the askers are cut into ranges for the
-/// threads, and the pairs appended in the order of the askers.
+/// As find_pairs_of() without tasks, with the query boxes divided into ranges for the threads. Appends the pairs in the
+/// order of the query boxes.
 template <Structure S>
-void ask_one_by_one(TaskRunner& tasks, const S& structure, std::span<const Move> query_boxes,
-                    std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
+void find_pairs_by_ranges(TaskRunner& tasks, const S& structure, std::span<const Move> query_boxes,
+                          std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
     constexpr std::size_t grain = 512;
     if (tasks.threads() == 1 || query_boxes.size() <= grain)
         return find_pairs_of(structure, query_boxes, is_query, out);
@@ -118,8 +119,8 @@ void ask_one_by_one(TaskRunner& tasks, const S& structure, std::span<const Move>
     for (const std::vector<Pair>& part : found) out.insert(out.end(), part.begin(), part.end());
 }
 
-/// The same pairs, found by several threads; the order may differ from the one of a single thread, but not with the
-/// number of threads of `tasks` when that is above 1. Sorted, all are equal.
+/// Finds the same pairs on several threads. The order may differ from that of a single thread, but is the same for any
+/// number of threads above 1.
 template <Structure S> void find_pairs(TaskRunner& tasks, const S& structure, std::vector<Pair>& out) {
     if (tasks.threads() == 1) return find_pairs(structure, out);
     if constexpr (FindsOwnPairsInParallel<S>) {
@@ -131,14 +132,14 @@ template <Structure S> void find_pairs(TaskRunner& tasks, const S& structure, st
         stored_boxes(structure, all);
         Proxy largest = 0;
         for (const Move& m : all) largest = m.proxy > largest ? m.proxy : largest;
-        const std::vector<std::uint8_t> all_ask(largest + std::size_t{1}, 1);
-        ask_one_by_one(tasks, structure, all, all_ask, out);
+        const std::vector<std::uint8_t> all_are_queries(largest + std::size_t{1}, 1);
+        find_pairs_by_ranges(tasks, structure, all, all_are_queries, out);
     }
 }
 
-/// The pairs of find_pairs_of, by several threads and in another order. When at least a third of what is stored asks,
-/// with the very boxes that are stored, a structure that finds its own pairs finds them all at once, and those of the
-/// others are dropped: for a tree in which everything asks four times faster.
+/// The pairs of find_pairs_of(), found on several threads and in another order. When at least a third of the stored
+/// boxes are query boxes with the same bounds, a structure with FindsOwnPairs finds all its pairs and the pairs without
+/// a query box are dropped: four times faster for a tree in which every box is a query box.
 template <Structure S>
 void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> query_boxes,
                    std::span<const std::uint8_t> is_query, std::vector<Pair>& out) {
@@ -149,25 +150,25 @@ void find_pairs_of(TaskRunner& tasks, const S& structure, std::span<const Move> 
                 const std::size_t first = out.size();
                 find_pairs(tasks, structure, out);
                 keep_pairs_of(known, is_query, out, first);
-                return ask_one_by_one(tasks, structure, known.others, is_query, out);
+                return find_pairs_by_ranges(tasks, structure, known.others, is_query, out);
             }
         }
     }
-    ask_one_by_one(tasks, structure, query_boxes, is_query, out);
+    find_pairs_by_ranges(tasks, structure, query_boxes, is_query, out);
 }
 
-/// Appends every pair of a box stored in `a` and one stored in `b` that overlap. Proxies of both count as one
-/// numbering: a proxy that is stored in both is not paired with itself (and a pair that is stored in both is found
-/// twice).
+/// Appends every overlapping pair of a box stored in `a` and one stored in `b`. Both share one numbering of proxies: a
+/// proxy stored in both is not paired with itself, and a pair stored in both is found twice.
 template <Structure A, Structure B> void find_pairs_between(const A& a, const B& b, std::vector<Pair>& out) {
-    const bool a_asks = a.size() < b.size();
-    const std::size_t few = a_asks ? a.size() : b.size(), many = a_asks ? b.size() : a.size();
-    if constexpr (std::same_as<A, B> && FindsPairsWithItsKind<A>) {
-        // Trees: below that share, measured, asking is as fast. Who asks in a better order than any says so.
-        if (requires { A::asks_in_order; } || few >= many / 16) return a.find_pairs_with(b, out);
+    const bool a_is_smaller = a.size() < b.size();
+    const std::size_t few = a_is_smaller ? a.size() : b.size(), many = a_is_smaller ? b.size() : a.size();
+    if constexpr (std::same_as<A, B> && FindsPairsWithSameKind<A>) {
+        // For trees, queries are as fast below this share (measured). Structures with a coherent query order set
+        // `queries_in_order` and always take this path.
+        if (requires { A::queries_in_order; } || few >= many / 16) return a.find_pairs_with(b, out);
     }
     std::vector<Move> query_boxes;
-    if (a_asks) {
+    if (a_is_smaller) {
         stored_boxes(a, query_boxes);
         find_pairs_of(b, query_boxes, out);
     } else {

@@ -1,10 +1,9 @@
-/// Sharing boxes out to loose cells, from the top.
+/// Distributes boxes to loose cells, top-down.
 #include "fase/broad/loose_octree.hpp"
 
 #include <algorithm>
 
 #include "fase/broad/builders/cell_pairs.hpp"
-#include "fase/broad/search/parted_pairs.hpp"
 
 namespace fase::broad {
 
@@ -15,19 +14,18 @@ LooseOctree::LooseOctree(const Settings& settings) : settings_(settings) {
 }
 
 std::uint32_t LooseOctree::Record::child(const Path& cell) const {
-    if (depth <= cell.depth) return staying;
+    if (depth <= cell.depth) return own_leaf;
     std::uint32_t child = 0;
     for (std::size_t a = 0; a < 3; ++a) child |= ((centre[a] >> (deepest_cell - cell.depth - 1)) & 1u) << a;
     return child;
 }
 
 LooseOctree::Record LooseOctree::record_of(const Aabb& box, std::uint32_t row) const {
-    const Vec3 sides = extent(box);
-    const float steps = frame_.steps_in(std::max({sides.x, sides.y, sides.z}));
-    // The smallest power of two, as an exponent, that is no less than the box's size in steps.
-    const auto whole =
-        steps < static_cast<float>(1 << deepest_cell) ? static_cast<std::uint32_t>(steps) : 1u << deepest_cell;
-    const int exponent = std::min(static_cast<int>(std::bit_width(whole)), deepest_cell);
+    const float size_in_steps = frame_.to_steps(longest_side(box));
+    // Exponent of the smallest power of two that is not below the size of the box in steps.
+    const auto steps = size_in_steps < static_cast<float>(1 << deepest_cell) ? static_cast<std::uint32_t>(size_in_steps)
+                                                                             : 1u << deepest_cell;
+    const int exponent = std::min(static_cast<int>(std::bit_width(steps)), deepest_cell);
     return {frame_.steps_of(centre(box)), static_cast<std::uint16_t>(deepest_cell - exponent), row};
 }
 
@@ -53,26 +51,27 @@ void LooseOctree::rebuild() {
 bool LooseOctree::try_split(const Task& task) {
     const std::uint32_t count = task.end - task.begin;
     if (task.is_leaf || count <= settings_.capacity || task.path.depth >= settings_.max_depth) return false;
-    std::array<std::uint32_t, staying + 1> counts{}, to{};
+    std::array<std::uint32_t, own_leaf + 1> counts{}, target{};
     for (std::uint32_t i = task.begin; i < task.end; ++i) ++counts[records_[i].child(task.path)];
-    if (counts[staying] == count) return false;
+    if (counts[own_leaf] == count) return false;
     std::uint16_t children = 0;
-    for (std::uint32_t child = 0; child <= staying; ++child)
+    for (std::uint32_t child = 0; child <= own_leaf; ++child)
         children = static_cast<std::uint16_t>(children | (counts[child] != 0 ? 1u << child : 0));
 
     std::uint32_t node = tree_.split(task.node, children) + static_cast<std::uint32_t>(std::popcount(children));
     std::uint32_t top = task.end;
     if (records_.size() < top + count) records_.resize(std::max<std::size_t>(top + count, 2 * records_.size()));
-    for (std::uint32_t child = staying + 1; child-- > 0;) {  // the first child ends up on top, and is next
+    for (std::uint32_t child = own_leaf + 1;
+         child-- > 0;) {  // the first child is on top of the stack, so it comes next
         if (counts[child] == 0) continue;
-        to[child] = top;
-        const Path path = child == staying ? task.path : task.path.child(child);
-        tasks_.push_back({path, --node, top, top + counts[child], child == staying});
+        target[child] = top;
+        const Path path = child == own_leaf ? task.path : task.path.child(child);
+        tasks_.push_back({path, --node, top, top + counts[child], child == own_leaf});
         top += counts[child];
     }
     for (std::uint32_t i = task.begin; i < task.end; ++i) {
         const Record record = records_[i];
-        records_[to[record.child(task.path)]++] = record;
+        records_[target[record.child(task.path)]++] = record;
     }
     return true;
 }
@@ -89,7 +88,7 @@ void LooseOctree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
         store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     const std::size_t leaves = tree_.leaves().size();
-    find_in_parts(tasks, parts_of(leaves), out, [&](std::size_t i, std::vector<Pair>& found) {
+    find_in_parts(tasks, parts_of(leaves), buffers_, out, [&](std::size_t i, std::vector<Pair>& found) {
         PairSink sink(found);
         find_pairs_near_leaves(tree_, leaves_of_part(leaves, i), false, sink);
     });
@@ -108,21 +107,21 @@ std::size_t LooseOctree::bytes() const {
            tasks_.capacity() * sizeof(Task);
 }
 
-/// Holds the leaves against the size and the centre of all boxes, computed afresh.
+/// Checks the leaves against the size and centre of all boxes, computed again.
 std::string LooseOctree::broken_cells() const {
     std::string broken;
     tree_.walk(Path{}, [&](std::uint32_t at, const Path& path) {
         const CellTree::Node& node = tree_.nodes()[at];
-        if (path.depth > settings_.max_depth) broken = "a node lies too deep";
+        if (path.depth > settings_.max_depth) broken = "a node is too deep";
         if (!node.is_leaf()) return;
         const CellTree::Leaf& leaf = tree_.leaves()[node.leaf_begin];
-        if (leaf.visitors != 0) broken = "a box is in two leaves";
+        if (leaf.references != 0) broken = "a box is in two leaves";
         for (const Aabb& box : tree_.boxes().subspan(leaf.first, leaf.owned)) {
             const Record record = record_of(box, 0);
             if (record.depth < path.depth) broken = "a box is larger than its cell";
             for (std::size_t a = 0; a < 3; ++a)
                 if (record.centre[a] < path.begin(a) || record.centre[a] >= path.end(a))
-                    broken = "the centre of a box lies outside its cell";
+                    broken = "the centre of a box is outside its cell";
         }
     });
     return broken;

@@ -1,39 +1,40 @@
 #pragma once
-/// What a search for the nearest hands to a structure: how far each box is.
+/// Measures: the distance functions of nearest-first searches.
 #include <concepts>
 
 #include "fase/geometry/ray.hpp"
 
 namespace fase::broad {
 
-/// at(box, limit): how far the box is, or `beyond` when that is more than `limit` (a little more may pass). Monotone: a
-/// box is never nearer than one that contains it. bounds() encloses every box whose at() is not `beyond`.
+/// distance(box, limit): the distance of the box, or `infinite_distance` when it exceeds `limit`; distances slightly
+/// above the limit may be returned as well. Monotone: a box is never nearer than a box that contains it. bounds()
+/// encloses every box at a finite distance.
 template <class M>
 concept Measure = requires(const M& measure, const Aabb& box, float limit) {
-    { measure.at(box, limit) } -> std::same_as<float>;
+    { measure.distance(box, limit) } -> std::same_as<float>;
     { measure.bounds() } -> std::convertible_to<Aabb>;
 };
 
-/// The answer of a measure for what is out of reach.
-inline constexpr float beyond = Aabb::infinity;
+/// The distance that a measure returns for a box out of range; as a limit: no limit.
+inline constexpr float infinite_distance = Aabb::infinity;
 
-/// Metres along a ray to where a box begins; or, with a box that is carried along the ray, to where that box begins to
-/// touch. 0 when they touch from the start.
+/// Metres along a ray to the entry point of a box; for a box swept along the ray, metres to the first contact. 0 when
+/// they touch at the start.
 class RayMeasure {
 public:
     explicit RayMeasure(const Ray& ray) : RayMeasure(ray, Vec3{}, Vec3{}) {}
-    /// The box that is carried reaches from `before` (0 or less) to `after` (0 or more) around the ray's origin.
+    /// The swept box extends from `before` (0 or less) to `after` (0 or more) around the ray's origin.
     RayMeasure(const Ray& ray, Vec3 before, Vec3 after);
 
-    [[nodiscard]] float at(const Aabb& box, float limit) const {
-        if (!overlaps(bounds_, box)) return beyond;
-        // The answers are rounded down: the limit has to reach a little farther to meet what is just as far.
-        const float reach = limit + limit * 0x1p-21f + std::numeric_limits<float>::min();
-        return test_.entry(thick_ ? met_by_origin(box) : box, reach);
+    [[nodiscard]] float distance(const Aabb& box, float limit) const {
+        if (!overlaps(bounds_, box)) return infinite_distance;
+        // Distances are rounded down, so the limit is raised slightly to accept boxes exactly at the limit.
+        const float max_entry = limit + limit * 0x1p-21f + std::numeric_limits<float>::min();
+        return test_.entry(is_swept_ ? expanded(box) : box, max_entry);
     }
     [[nodiscard]] Aabb bounds() const { return bounds_; }
     [[nodiscard]] const Ray& ray() const { return ray_; }
-    /// How far the carried box reaches around the ray's origin; both 0 for a bare ray.
+    /// Extent of the swept box around the ray's origin; both 0 for a plain ray.
     [[nodiscard]] Vec3 before() const { return before_; }
     [[nodiscard]] Vec3 after() const { return after_; }
 
@@ -42,22 +43,22 @@ private:
     RayBoxTest test_;
     Vec3 before_, after_;
     Aabb bounds_;
-    bool thick_ = false;
+    bool is_swept_ = false;
 
-    /// The box that the origin meets when the carried box meets `box`; rounded outward.
-    [[nodiscard]] Aabb met_by_origin(const Aabb& box) const;
+    /// `box` expanded by the swept box (Minkowski sum), so that the ray alone can be tested; rounded outward.
+    [[nodiscard]] Aabb expanded(const Aabb& box) const;
 };
 
-/// Metres from a point to a box; 0 inside. Rounded to float, so that equal distances are told apart by proxies.
+/// Metres from a point to a box; 0 inside. Rounded to float; callers break ties of equal distances by proxy.
 class PointMeasure {
 public:
-    /// Boxes within `radius` metres (0 or more, may be infinite) count.
+    /// Only boxes within `radius` metres are in range; 0 or more, may be infinite.
     PointMeasure(Vec3d point, float radius);
 
-    [[nodiscard]] float at(const Aabb& box, float limit) const {
-        if (!overlaps(bounds_, box)) return beyond;
+    [[nodiscard]] float distance(const Aabb& box, float limit) const {
+        if (!overlaps(bounds_, box)) return infinite_distance;
         const float distance = distance_to(box);
-        return distance <= limit && distance <= radius_ ? distance : beyond;
+        return distance <= limit && distance <= radius_ ? distance : infinite_distance;
     }
     [[nodiscard]] Aabb bounds() const { return bounds_; }
     [[nodiscard]] Vec3d point() const { return point_; }

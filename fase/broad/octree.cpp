@@ -1,4 +1,4 @@
-/// How an octree is set up.
+/// Constructors of the octree.
 #include "fase/broad/octree.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// What the plane of a quadtree means.
+/// Maps the plane of a quadtree to its axes.
 #include "fase/broad/quadtree.hpp"
 
 #include <algorithm>

@@ -1,27 +1,27 @@
 #pragma once
-/// What a query hands to a structure: which boxes are of interest.
+/// Regions: predicates by which a query selects boxes.
 #include <concepts>
 
 #include "fase/geometry/frustum.hpp"
 
 namespace fase::broad {
 
-/// touches() must be monotone: a box that contains a touching box touches too. bounds() encloses all that touches.
-/// Trees prune with touches(); grids and sorted lists first narrow down with bounds().
+/// touches() must be monotone: a box that contains a touching box also touches. bounds() encloses all touching boxes.
+/// Trees prune with touches(); grids and sorted lists first reduce the candidates with bounds().
 template <class R>
 concept Region = requires(const R& region, const Aabb& box) {
     { region.touches(box) } -> std::same_as<bool>;
     { region.bounds() } -> std::convertible_to<Aabb>;
 };
 
-/// A region that can also say that a box is wholly inside it. contains() must be monotone the other way: what is within
-/// a contained box is contained.
+/// A region that can also test whether a box is completely inside. contains() must be monotone in the other direction:
+/// a box inside a contained box is contained.
 template <class R>
 concept SolidRegion = Region<R> && requires(const R& region, const Aabb& box) {
     { region.contains(box) } -> std::same_as<bool>;
 };
 
-/// All that overlaps a box (touching counts).
+/// Selects boxes that overlap a box; touching counts.
 struct BoxRegion {
     Aabb box;
     [[nodiscard]] bool touches(const Aabb& other) const { return overlaps(box, other); }
@@ -29,7 +29,7 @@ struct BoxRegion {
     [[nodiscard]] Aabb bounds() const { return box; }
 };
 
-/// All that a camera may see: boxes that are not wholly outside a plane of the frustum, nor outside a box around it.
+/// Selects boxes that a camera may see: those not completely outside one plane of the frustum or outside its bounds.
 class FrustumRegion {
 public:
     explicit FrustumRegion(const Frustum& frustum) : frustum_(frustum), bounds_(fase::bounds(frustum)) {}
@@ -45,7 +45,7 @@ private:
     Aabb bounds_;
 };
 
-/// All there is.
+/// Selects every box.
 struct Everything {
     [[nodiscard]] bool touches(const Aabb&) const { return true; }
     [[nodiscard]] Aabb bounds() const { return Aabb::everything(); }

@@ -1,5 +1,5 @@
 #pragma once
-/// The one place that names every structure. To add one: its header, and its line here.
+/// The list of all structures. To add one, include its header and add one line here.
 #include "fase/broad/brute_force.hpp"
 #include "fase/broad/bsp.hpp"
 #include "fase/broad/dynamic_bvh.hpp"
@@ -17,7 +17,7 @@ namespace fase::broad {
 
 template <Structure... S> struct StructureList {};
 
-/// Brute force stands first: it judges the others.
+/// Brute force comes first: it is the reference (oracle) of the tests.
 using AllStructures = StructureList<  //
     BruteForce,                       //
     SweepAndPrune,                    //
@@ -38,7 +38,7 @@ template <class F, class... S> void for_each_structure(F&& f, StructureList<S...
 }
 template <class F> void for_each_structure(F&& f) { for_each_structure(f, AllStructures{}); }
 
-/// The structure that is used when the user names none, or "auto".
+/// The structure used when the user names none, or "auto".
 inline constexpr std::string_view default_structure = RowGrid::info.name;
 
 }  // namespace fase::broad

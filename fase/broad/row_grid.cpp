@@ -1,4 +1,4 @@
-/// What belongs to the row grid as a whole: its two populations, and who asks whom for pairs.
+/// The row grid as a whole: its two motion states, and which boxes are query boxes in the search for pairs.
 #include "fase/broad/row_grid.hpp"
 
 #include <algorithm>
@@ -11,25 +11,25 @@ namespace {
 
 using row_grid::PairBlock;
 
-/// What is searched: each set of records within itself, and the fewer against the others.
+/// Divides the search into chunks: each set within itself, and the smaller motion state against the larger one.
 struct Chunks {
     const RowPartition &moving, &resting;
-    bool moving_ask;  // the fewer ask the others
-    std::size_t first_resting, first_asking, count;
+    bool moving_query;  // the smaller motion state queries the larger one
+    std::size_t first_resting, first_query, count;
 
-    Chunks(const RowPartition& m, const RowPartition& r, bool resting_too)
-        : moving(m), resting(r), moving_ask(m.size() <= r.size()) {
+    Chunks(const RowPartition& m, const RowPartition& r, bool with_resting)
+        : moving(m), resting(r), moving_query(m.size() <= r.size()) {
         first_resting = parts(moving);
-        first_asking = first_resting + (resting_too ? parts(resting) : 0);
-        count = first_asking + (many().size() == 0 ? 0 : parts(few()));
+        first_query = first_resting + (with_resting ? parts(resting) : 0);
+        count = first_query + (many().size() == 0 ? 0 : parts(few()));
     }
     void find(std::size_t chunk, PairBlock& out) const {
         if (chunk < first_resting) {
             find_own(moving, chunk, out);
-        } else if (chunk < first_asking) {
+        } else if (chunk < first_query) {
             find_own(resting, chunk - first_resting, out);
         } else {
-            with_records(few(), chunk - first_asking, [&](std::size_t k, std::size_t begin, std::size_t end) {
+            with_records(few(), chunk - first_query, [&](std::size_t k, std::size_t begin, std::size_t end) {
                 for_queries(few().set(k).view(), begin, end, [&](std::span<const Move> query_boxes) {
                     many().find_query_pairs({query_boxes, {}}, out);
                 });
@@ -38,8 +38,8 @@ struct Chunks {
     }
 
 private:
-    [[nodiscard]] const RowPartition& few() const { return moving_ask ? moving : resting; }
-    [[nodiscard]] const RowPartition& many() const { return moving_ask ? resting : moving; }
+    [[nodiscard]] const RowPartition& few() const { return moving_query ? moving : resting; }
+    [[nodiscard]] const RowPartition& many() const { return moving_query ? resting : moving; }
     static std::size_t parts(const RowSet& set) { return row_grid::RowCuts(set.levels()).chunks(); }
     static std::size_t parts(const RowPartition& part) {
         std::size_t sum = 0;
@@ -59,14 +59,14 @@ private:
     }
 };
 
-/// The pairs of each odd box of `part` with the ordinary ones of `others`.
+/// Appends the pairs of each unbounded box of `part` with the regular ones of `others`.
 void query_unbounded(const RowPartition& part, const RowPartition& others, std::vector<Pair>& out) {
     if (part.unbounded().empty()) return;
     PairBlock block(out);
     others.find_query_pairs({part.unbounded(), {}}, block);
 }
 
-/// The pairs of an odd box of each.
+/// Appends the pairs of an unbounded box of `a` and one of `b`.
 void find_unbounded_pairs_between(const RowPartition& a, const RowPartition& b, std::vector<Pair>& out) {
     PairSink sink(out);
     for (const Move& m : a.unbounded())
@@ -91,7 +91,7 @@ void RowGrid::clear() {
 
 void RowGrid::commit(TaskRunner* tasks) {
     moving_.commit(settings_, tasks);
-    resting_.settle(settings_);
+    resting_.commit_to_blocks(settings_);
 }
 
 void RowGrid::build(std::span<const Move> boxes) {
@@ -101,22 +101,22 @@ void RowGrid::build(std::span<const Move> boxes) {
     commit();
 }
 
-void RowGrid::build_still(std::span<const Move> boxes) {
+void RowGrid::build_static(std::span<const Move> boxes) {
     clear();
-    moving_.build_still(boxes, settings_);
+    moving_.build_static(boxes, settings_);
 }
 
-void RowGrid::find(TaskRunner* tasks, bool resting_too, std::vector<Pair>& out) const {
-    find_unbounded_pairs(resting_too, out);
-    const Chunks chunks(moving_, resting_, resting_too);
-    row_grid::find_in_chunks(tasks, chunks.count, out,
+void RowGrid::find(TaskRunner* tasks, bool with_resting, std::vector<Pair>& out) const {
+    find_unbounded_pairs(with_resting, out);
+    const Chunks chunks(moving_, resting_, with_resting);
+    row_grid::find_in_chunks(tasks, chunks.count, buffers_, out,
                              [&](std::size_t chunk, PairBlock& block) { chunks.find(chunk, block); });
 }
 
-void RowGrid::find_unbounded_pairs(bool resting_too, std::vector<Pair>& out) const {
+void RowGrid::find_unbounded_pairs(bool with_resting, std::vector<Pair>& out) const {
     if (moving_.unbounded().empty() && resting_.unbounded().empty()) return;
     for (const RowPartition* part : {&moving_, &resting_}) {
-        if (part == &resting_ && !resting_too) continue;
+        if (part == &resting_ && !with_resting) continue;
         query_unbounded(*part, *part, out);
         PairSink sink(out);
         const std::span<const Move> unbounded = part->unbounded();
@@ -137,8 +137,8 @@ void RowGrid::find_pairs_of(std::span<const Move> query_boxes, std::span<const s
             for (const Move& m : query_boxes) {
                 for (const Move& other : part->unbounded()) {
                     const Proxy q = other.proxy;
-                    const bool asked_by_q = q < m.proxy && q < is_query.size() && is_query[q] != 0;
-                    if (q != m.proxy && !asked_by_q && overlaps(m.box, other.box)) sink.add(m.proxy, q);
+                    const bool found_by_q = q < m.proxy && q < is_query.size() && is_query[q] != 0;
+                    if (q != m.proxy && !found_by_q && overlaps(m.box, other.box)) sink.add(m.proxy, q);
                 }
             }
         }
@@ -176,7 +176,7 @@ std::string RowGrid::broken_invariant() const {
     for (std::size_t k = 0; k < moving_.sets(); ++k) {
         const RowView set = moving_.set(k).view();
         for (std::size_t i = 0; i < set.count; ++i)
-            if (set.proxies[i] != killed && resting_.holds(set.proxies[i])) return "a box is awake and rests";
+            if (set.proxies[i] != tombstone && resting_.holds(set.proxies[i])) return "a box is both awake and resting";
     }
     return {};
 }

@@ -1,34 +1,33 @@
-/// How the rows are sorted, and swept against each other.
+/// Sorts the two lists, and sweeps them against each other.
 #include "fase/broad/sweep_and_prune.hpp"
 
 #include "fase/broad/builders/radix_sort.hpp"
 #include "fase/broad/search/pair_sink.hpp"
-#include "fase/broad/search/parted_pairs.hpp"
 #include "fase/broad/sweep/axis.hpp"
 
 namespace fase::broad {
 
 void SweepAndPrune::insert(Proxy p, const Aabb& box) {
     store_.insert(p, box);
-    need(awake_, Work::Collect);
+    require(awake_, Work::Collect);
 }
 
 void SweepAndPrune::move(Proxy p, const Aabb& box) {
     const bool was_unbounded = store_.is_unbounded(p);
     store_.move(p, box);
-    need(row_of(p), was_unbounded == store_.is_unbounded(p) ? Work::Sort : Work::Collect);
+    require(list_of(p), was_unbounded == store_.is_unbounded(p) ? Work::Sort : Work::Collect);
 }
 
 void SweepAndPrune::erase(Proxy p) {
-    need(row_of(p), Work::Collect);
+    require(list_of(p), Work::Collect);
     store_.erase(p);
 }
 
 void SweepAndPrune::set_awake(Proxy p, bool awake) {
     if (store_.is_awake(p) == awake) return;
     store_.set_awake(p, awake);
-    need(awake_, Work::Collect);
-    need(resting_, Work::Collect);
+    require(awake_, Work::Collect);
+    require(resting_, Work::Collect);
 }
 
 void SweepAndPrune::clear() {
@@ -40,23 +39,23 @@ void SweepAndPrune::commit() {
     if (awake_.work == Work::None && resting_.work == Work::None) return;
     const int axis = settings_.axis >= 0 ? settings_.axis % 3 : best_sweep_axis(store_.regular(), axis_);
     if (axis != axis_) {
-        need(awake_, Work::Sort);
-        need(resting_, Work::Sort);
+        require(awake_, Work::Sort);
+        require(resting_, Work::Sort);
     }
     axis_ = axis;
     if (awake_.work != Work::None) sort(awake_, true);
     if (resting_.work != Work::None) sort(resting_, false);
 }
 
-/// A row in which boxes only moved is sorted as it stands, unless reading all boxes in their order is faster.
-void SweepAndPrune::sort(Row& row, bool awake) {
+/// Sorts a list. When boxes have only moved, it starts from the previous order, unless a scan of all boxes is faster.
+void SweepAndPrune::sort(List& list, bool awake) {
     const auto key = [&](std::uint32_t place) {
         return std::uint64_t{ordered_key(store_.regular()[place].box.lo[axis_])} << 32 | place;
     };
     const auto all = static_cast<std::uint32_t>(store_.regular().size());
     keys_.clear();
-    if (row.work == Work::Sort && row.tree.size() < all / 4) {
-        for (const Proxy p : row.tree.boxes().proxies()) keys_.push_back(key(store_.place(p)));
+    if (list.work == Work::Sort && list.tree.size() < all / 4) {
+        for (const Proxy p : list.tree.boxes().proxies()) keys_.push_back(key(store_.place(p)));
     } else if (store_.resting() == 0) {
         keys_.resize(awake ? all : 0);
         for (std::uint32_t i = 0; i < keys_.size(); ++i) keys_[i] = key(i);
@@ -65,13 +64,13 @@ void SweepAndPrune::sort(Row& row, bool awake) {
             if (store_.is_awake(store_.regular()[i].proxy) == awake) keys_.push_back(key(i));
     }
     radix_sort(keys_, 32, scratch_);
-    row.tree.resize(keys_.size());
+    list.tree.resize(keys_.size());
     for (std::size_t i = 0; i < keys_.size(); ++i) {
         const Move& m = store_.regular()[static_cast<std::uint32_t>(keys_[i])];
-        row.tree.put(i, m.proxy, m.box);
+        list.tree.put(i, m.proxy, m.box);
     }
-    row.tree.close();
-    row.work = Work::None;
+    list.tree.close();
+    list.work = Work::None;
 }
 
 void SweepAndPrune::sweep(const Part& part, std::vector<Pair>& out) const {
@@ -85,19 +84,19 @@ void SweepAndPrune::sweep(const Part& part, std::vector<Pair>& out) const {
     }
 }
 
-/// Calls act(part) for parts of at most `grain` boxes (a multiple of a run) that together find all pairs.
-template <class Do> void SweepAndPrune::for_each_part(std::size_t grain, bool awake_only, Do&& act) const {
-    const auto cut = [&](const Row& mine, const Row& theirs, Ties ties) {
+/// Calls visit(part) for parts of at most `grain` boxes (a multiple of a run) that together find all pairs.
+template <class Visit> void SweepAndPrune::for_each_part(std::size_t grain, bool awake_only, Visit&& visit) const {
+    const auto divide = [&](const List& mine, const List& theirs, Ties ties) {
         if (mine.tree.size() == 0 || theirs.tree.size() == 0) return;
         for (std::size_t begin = 0; begin < mine.tree.size(); begin += grain) {
             const std::size_t end = begin + grain < mine.tree.size() ? begin + grain : mine.tree.size();
-            act(Part{&mine.tree, &theirs.tree, ties, begin, end});
+            visit(Part{&mine.tree, &theirs.tree, ties, begin, end});
         }
     };
-    cut(awake_, awake_, Ties::Mine);
-    cut(awake_, resting_, Ties::Mine);
-    cut(resting_, awake_, Ties::Theirs);
-    if (!awake_only) cut(resting_, resting_, Ties::Mine);
+    divide(awake_, awake_, Ties::Mine);
+    divide(awake_, resting_, Ties::Mine);
+    divide(resting_, awake_, Ties::Theirs);
+    if (!awake_only) divide(resting_, resting_, Ties::Mine);
 }
 
 void SweepAndPrune::find_pairs(std::vector<Pair>& out) const {
@@ -125,7 +124,8 @@ void SweepAndPrune::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const 
     constexpr std::size_t grain = 8 * RunTree::run;
     std::vector<Part> parts;
     for_each_part(grain, false, [&](const Part& part) { parts.push_back(part); });
-    find_in_parts(tasks, parts.size(), out, [&](std::size_t i, std::vector<Pair>& found) { sweep(parts[i], found); });
+    find_in_parts(tasks, parts.size(), buffers_, out,
+                  [&](std::size_t i, std::vector<Pair>& found) { sweep(parts[i], found); });
 }
 
 std::size_t SweepAndPrune::bytes() const {
@@ -141,22 +141,22 @@ void SweepAndPrune::cells(std::vector<DrawnCell>& out) const {
 std::string SweepAndPrune::broken_invariant() const {
     if (std::string wrong = store_.broken_invariant(); !wrong.empty()) return wrong;
     for (const bool awake : {true, false}) {
-        const Row& row = awake ? awake_ : resting_;
-        if (row.work != Work::None) continue;  // waits for commit()
-        if (std::string wrong = row.tree.broken_invariant(); !wrong.empty()) return wrong;
-        std::size_t wanted = 0;
-        for (const Move& m : store_.regular()) wanted += store_.is_awake(m.proxy) == awake ? 1 : 0;
-        if (row.tree.size() != wanted) return "a row does not hold all of its boxes";
-        const BoxColumns& boxes = row.tree.boxes();
+        const List& list = awake ? awake_ : resting_;
+        if (list.work != Work::None) continue;  // needs commit()
+        if (std::string wrong = list.tree.broken_invariant(); !wrong.empty()) return wrong;
+        std::size_t expected = 0;
+        for (const Move& m : store_.regular()) expected += store_.is_awake(m.proxy) == awake ? 1 : 0;
+        if (list.tree.size() != expected) return "the number of boxes in a list is wrong";
+        const BoxColumns& boxes = list.tree.boxes();
         std::vector<std::uint8_t> seen;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const Proxy p = boxes.proxy(i);
             if (!store_.holds(p) || store_.is_unbounded(p) || store_.is_awake(p) != awake)
-                return "a box is in a wrong row";
-            if (!(boxes.box(i) == store_.box(p))) return "a row holds an old box";
-            if (i > 0 && !(boxes.box(i - 1).lo[axis_] <= boxes.box(i).lo[axis_])) return "a row is not sorted";
+                return "a box is in the wrong list";
+            if (!(boxes.box(i) == store_.box(p))) return "a list has an outdated box";
+            if (i > 0 && !(boxes.box(i - 1).lo[axis_] <= boxes.box(i).lo[axis_])) return "a list is not sorted";
             if (p >= seen.size()) seen.resize(p + std::size_t{1});
-            if (std::exchange(seen[p], std::uint8_t{1}) != 0) return "a box is twice in a row";
+            if (std::exchange(seen[p], std::uint8_t{1}) != 0) return "a box is in a list twice";
         }
     }
     return {};

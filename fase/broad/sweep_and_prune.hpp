@@ -1,29 +1,29 @@
 #pragma once
-/// Boxes sorted along one axis, each tested against those that begin within it.
+/// Sweep and prune: boxes sorted along one axis, each tested against those that begin inside it.
 #include <utility>
 
 #include "fase/broad/boxes/box_store.hpp"
+#include "fase/broad/search/partitioned_search.hpp"
 #include "fase/broad/sweep/run_tree.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
-/// Two rows of boxes, those that are awake and those that rest, each sorted by the lower bounds on one axis, the one on
-/// which the fewest boxes overlap. commit() sorts a row anew when something in it has changed. For queries, boxes stand
-/// around runs of 64. Boxes beyond 1e17 m, infinite or NaN are kept apart and tested one by one.
-/// insert, move, erase: O(1). commit: O(n) in the row that changed. All pairs: n times the number of boxes that begin
-/// within one on the axis, 4 to 16 tests at once.
-/// Sources: Baraff 1992, Dynamic simulation of non-penetrating rigid bodies (sort and sweep); Terdiman 2015, Box
-/// pruning revisited (one axis, sorted by radix, wide tests).
+/// Two lists of boxes, awake and resting, each sorted by the lower bounds on one axis, the one with the fewest
+/// overlaps. commit() sorts a list again when a box in it has changed. For queries, runs of 64 boxes have bounds.
+/// Unbounded boxes (infinite, NaN, beyond 1e17 m) are kept in a list and tested one by one. insert, move, erase: O(1).
+/// commit: O(n) for a list that changed. All pairs: n times the number of boxes that begin inside one on the axis, 4 to
+/// 16 tests at a time. Sources: Baraff 1992, Dynamic simulation of non-penetrating rigid bodies (sort and sweep);
+/// Terdiman 2015, Box pruning revisited (one axis, sorted by radix, wide tests).
 class SweepAndPrune {
 public:
     static constexpr StructureInfo info{"sweep_and_prune",
                                         "sorted along one axis, each box is tested against those that begin within it",
                                         "Terdiman 2015, Box pruning revisited"};
 
-    /// What may be tuned. The pairs and hits that are reported never depend on it, only their order and the time.
+    /// Tuning parameters. They affect the order of the results and the time, never which pairs and hits are reported.
     struct Settings {
-        int axis = -1;  ///< to sort along: 0, 1, 2, or -1: the best is looked for at each commit
+        int axis = -1;  ///< sort axis: 0, 1, 2, or -1: chosen at each commit
     };
 
     SweepAndPrune() = default;
@@ -43,9 +43,9 @@ public:
     }
 
     void find_pairs(std::vector<Pair>& out) const;
-    /// The same pairs in the same order, found by several threads.
+    /// Same on several threads, with the same order of the pairs.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// The row that rests is not swept against itself.
+    /// Appends the pairs with an awake box. Does not sweep the resting list against itself.
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
@@ -69,37 +69,38 @@ public:
     [[nodiscard]] std::size_t nodes() const { return awake_.tree.nodes() + resting_.tree.nodes(); }
     [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] std::string broken_invariant() const;
-    /// The runs of 64, and the boxes around them.
+    /// Appends the bounds of the runs of 64 boxes and of the branches above.
     void cells(std::vector<DrawnCell>& out) const;
-    /// That the boxes are sorted along: 0, 1 or 2.
+    /// The sort axis: 0, 1 or 2.
     [[nodiscard]] int axis() const { return axis_; }
 
 private:
-    /// What commit() has to do: nothing, sort the same boxes anew, collect them first.
+    /// The work of commit(): none, sort the same boxes, or collect the boxes and sort them.
     enum class Work : std::uint8_t { None, Sort, Collect };
-    struct Row {
+    struct List {
         RunTree tree;
         Work work = Work::None;
     };
-    /// Boxes of one row that look for those of a row.
+    /// A range of one list that is swept against a list.
     struct Part {
         const RunTree* mine = nullptr;
-        const RunTree* theirs = nullptr;  // the same: those behind
+        const RunTree* theirs = nullptr;  // same list: only later boxes
         Ties ties = Ties::Mine;
         std::size_t begin = 0, end = 0;
     };
 
     Settings settings_;
     BoxStore store_;
-    Row awake_, resting_;
+    List awake_, resting_;
     int axis_ = 0;
     std::vector<std::uint64_t> keys_, scratch_;
+    mutable ThreadLocalPairBuffers buffers_;  // scratch of find_pairs() with tasks
 
-    [[nodiscard]] Row& row_of(Proxy p) { return store_.is_awake(p) ? awake_ : resting_; }
-    static void need(Row& row, Work work) { row.work = row.work < work ? work : row.work; }
-    void sort(Row& row, bool awake);
+    [[nodiscard]] List& list_of(Proxy p) { return store_.is_awake(p) ? awake_ : resting_; }
+    static void require(List& list, Work work) { list.work = list.work < work ? work : list.work; }
+    void sort(List& list, bool awake);
     void sweep(const Part& part, std::vector<Pair>& out) const;
-    template <class Do> void for_each_part(std::size_t grain, bool awake_only, Do&& act) const;
+    template <class Visit> void for_each_part(std::size_t grain, bool awake_only, Visit&& visit) const;
 };
 
 }  // namespace fase::broad

@@ -1,23 +1,24 @@
 #pragma once
-/// Boxes in every cell that they overlap, of an endless grid of which only the cells in use are stored.
+/// Hashed uniform grid: an unbounded grid that stores only the cells in use; a box is in every cell that it overlaps.
 #include <utility>
 
 #include "fase/broad/boxes/box_scan.hpp"
 #include "fase/broad/boxes/box_store.hpp"
+#include "fase/broad/search/partitioned_search.hpp"
 #include "fase/broad/uniform_grid/cell_table.hpp"
 #include "fase/broad/uniform_grid/walk.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
 
-/// A hashed grid of cubes, made anew at each commit() with changes, its cells as large as the boxes ask for. A box is
-/// in each cell that it overlaps, at most eight: larger ones are in a grid of cells four times as large, and so on up
-/// to eight grids; the few that are too large even then are in a list. A pair is reported by the cell where the two
-/// first meet, the largest of their lower corners, which three marks a box and cell tell. Boxes beyond 1e17 m, infinite
-/// or NaN are kept apart and tested one by one. insert, move, erase: O(1). commit: O(n), some 40 ns a box. All pairs: n
-/// times the boxes in a cell. Sources: Teschner, Heidelberger and others 2003, Optimized spatial hashing for collision
-/// detection of deformable objects; for the cell that reports a pair: Dittrich, Seeger 2000, Data redundancy and
-/// duplicate detection in spatial join processing.
+/// A hashed grid of cubes, rebuilt at each commit() with changes; the cell size is fitted to the boxes. A box is in
+/// each cell that it overlaps, at most eight. Larger boxes are in a level with cells four times as large, up to eight
+/// levels; boxes too large for all levels are in a list. A pair is reported by the cell of the lower corner of its
+/// intersection, which three marks per box and cell identify. Unbounded boxes (infinite, NaN, beyond 1e17 m) are tested
+/// one by one. insert, move, erase: O(1). commit: O(n), about 40 ns per box. All pairs: n times the boxes per cell.
+/// Sources: Teschner, Heidelberger and others 2003, Optimized spatial hashing for collision detection of deformable
+/// objects; for the cell that reports a pair: Dittrich, Seeger 2000, Data redundancy and duplicate detection in spatial
+/// join processing.
 class UniformGrid {
 public:
     static constexpr StructureInfo info{"uniform_grid",
@@ -25,10 +26,9 @@ public:
                                         "overlaps",
                                         "Teschner et al. 2003, Optimized spatial hashing for collision detection"};
 
-    /// What may be tuned. The pairs and hits that are reported never depend on it, only their order and the time.
+    /// Tuning parameters. They affect the order of the results and the time, never which pairs and hits are reported.
     struct Settings {
-        double cell =
-            0;  ///< metres, side of the finest cells; 0: from the sizes of the boxes and the room between them
+        double cell = 0;  ///< side of the finest cells, metres; 0: fitted to the sizes and density of the boxes
     };
 
     UniformGrid() = default;
@@ -44,13 +44,14 @@ public:
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const;
 
+    /// Appends all pairs.
     void find_pairs(std::vector<Pair>& out) const;
-    /// The same pairs in the same order, found by several threads.
+    /// Finds the same pairs in the same order on several threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// Cells in which all rest are passed over, and boxes that rest are not tested against each other.
+    /// Appends the pairs with an awake box. Skips cells in which all boxes sleep.
     void find_awake_pairs(std::vector<Pair>& out) const;
 
-    /// Rays go from cell to cell, and so do searches around a point, from the inside out.
+    /// Traverses the cells along a ray, or in shells around a point.
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const;
 
     template <class Visit> void for_each_leaf(Visit&& visit) const {
@@ -74,30 +75,30 @@ public:
     }
     [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] std::string broken_invariant() const;
-    /// The cells in use, the coarsest at depth 0.
+    /// Appends the cells in use, the coarsest level at depth 0.
     void cells(std::vector<DrawnCell>& out) const;
     /// Side of the finest cells, metres.
     [[nodiscard]] double cell_side() const { return levels_[0].frame.side; }
 
 private:
     static constexpr std::size_t max_levels = 8;
-    static constexpr double ratio = 4;            // of the cells of two levels
-    static constexpr double typical_sides = 2.5;  // side of the finest cells in longest sides of most boxes
+    static constexpr double ratio = 4;            // of the cell sides of two consecutive levels
+    static constexpr double typical_sides = 2.5;  // side of the finest cells per longest side of most boxes
     static constexpr std::uint32_t all_marks = 7;
 
     struct Level {
         GridFrame frame;
-        CellRange used;  // around the cells in use
+        CellRange used;  // encloses the cells in use
         std::size_t boxes = 0, cells = 0;
     };
-    /// A box on its way into a cell.
+    /// A box in a cell, while the grid is built.
     struct Entry {
-        std::uint32_t cell = 0, place = 0;
-        std::uint32_t marks = 0;  // bit k: the cell is the box's first on axis k
+        std::uint32_t cell = 0, row = 0;  // row: in store_.regular()
+        std::uint32_t marks = 0;          // bit k: the cell is the first of the box on axis k
     };
 
-    struct Filled {
-        std::uint32_t place = 0, marks = 0;
+    struct CellEntry {
+        std::uint32_t row = 0, marks = 0;
     };
 
     Settings settings_;
@@ -105,25 +106,26 @@ private:
     std::array<Level, max_levels> levels_;
     std::size_t level_count_ = 1;
     CellTable table_;
-    std::vector<ScanRange> cells_;        // by number: in entries_; the askers are those that are awake
-    std::vector<Aabb> homes_;             // by number: around the boxes whose lower corner is there
-    BoxColumns entries_;                  // cell by cell; in a cell those that are awake first
-    std::vector<std::uint32_t> marks_;    // of the same place
-    std::vector<std::uint8_t> level_of_;  // by place in store_.ordinary(); max_levels: in large_
+    std::vector<ScanRange> cells_;        // by cell number: range of entries_; its query boxes are the awake ones
+    std::vector<Aabb> home_bounds_;       // by cell number: bounds of the boxes whose lower corner is in the cell
+    BoxColumns entries_;                  // cell by cell; in a cell the awake ones first
+    std::vector<std::uint32_t> marks_;    // parallel to entries_
+    std::vector<std::uint8_t> level_of_;  // by row in store_.regular(); max_levels: in large_
     std::vector<Move> large_;
-    std::vector<Entry> entering_;  // scratch of commit(), in the order of the boxes
-    std::vector<Filled> filled_;   // scratch of commit(), in the order of entries_
+    std::vector<Entry> added_;                // scratch of commit(), in the order of the boxes
+    std::vector<CellEntry> sorted_;           // scratch of commit(), in the order of entries_
+    mutable ThreadLocalPairBuffers buffers_;  // scratch of find_pairs() with tasks
 
     [[nodiscard]] GridFrame fitting_frame() const;
-    void enter_boxes(bool awake);
-    void enter(std::uint32_t place);
+    void add_boxes(bool awake);
+    void add_box(std::uint32_t row);
     void fill_cells();
     void find_pairs_of_lists(bool awake_only, std::vector<Pair>& out) const;
     void find_pairs_across(std::size_t begin, std::size_t end, bool awake_only, std::vector<Pair>& out) const;
     void find_pairs_in_cells(std::size_t begin, std::size_t end, bool awake_only, std::vector<Pair>& out) const;
 
     /// Bit k: `at` is not the first of the range on axis k.
-    static std::uint32_t later_axes(const CellRange& range, const CellPlace& at) {
+    static std::uint32_t later_axes(const CellRange& range, const CellCoord& at) {
         return (at[0] != range.lo[0] ? 1u : 0u) | (at[1] != range.lo[1] ? 2u : 0u) | (at[2] != range.lo[2] ? 4u : 0u);
     }
     [[nodiscard]] int depth(std::uint32_t cell) const {
@@ -133,17 +135,18 @@ private:
         const CellTable::Key& key = table_.key(cell);
         return levels_[static_cast<std::size_t>(key.level)].frame.box(key.at);
     }
-    /// Visits the boxes of a cell that touch and carry all the marks that are needed; false when `visit` said stop.
+    /// Visits the boxes of a cell that touch the region and have all required marks; false when `visit` returned false.
     template <Region R, class Visit>
-    bool search_cell(const ScanRange& cell, std::uint32_t marks_needed, const R& region, Visit&& visit) const;
-    /// The cells whose home boxes touch, of the levels with a set bit.
+    bool search_cell(const ScanRange& cell, std::uint32_t required_marks, const R& region, Visit&& visit) const;
+    /// Searches all cells of the levels with a set bit whose home bounds touch the region.
     template <Region R, class Visit> void search_all_cells(std::uint32_t levels, const R& region, Visit&& visit) const;
 
     template <Measure M> class Nearest;
 };
 
 template <Region R, class Visit>
-bool UniformGrid::search_cell(const ScanRange& cell, std::uint32_t marks_needed, const R& region, Visit&& visit) const {
+bool UniformGrid::search_cell(const ScanRange& cell, std::uint32_t required_marks, const R& region,
+                              Visit&& visit) const {
     if constexpr (std::same_as<R, BoxRegion>) {
         constexpr std::uint32_t block = 64;
         std::array<std::uint32_t, block + BoxColumns::padding> hits;
@@ -152,13 +155,13 @@ bool UniformGrid::search_cell(const ScanRange& cell, std::uint32_t marks_needed,
             const std::size_t count = scan_touching(entries_.view(), first, end, region.box, hits.data());
             for (std::size_t i = 0; i < count; ++i) {
                 const std::uint32_t at = hits[i];
-                if ((marks_[at] & marks_needed) == marks_needed && !visit(entries_.proxy(at), entries_.box(at)))
+                if ((marks_[at] & required_marks) == required_marks && !visit(entries_.proxy(at), entries_.box(at)))
                     return false;
             }
         }
     } else {
         for (std::uint32_t at = cell.first; at < cell.end; ++at) {
-            if ((marks_[at] & marks_needed) != marks_needed) continue;
+            if ((marks_[at] & required_marks) != required_marks) continue;
             const Aabb box = entries_.box(at);
             if (region.touches(box) && !visit(entries_.proxy(at), box)) return false;
         }
@@ -169,7 +172,7 @@ bool UniformGrid::search_cell(const ScanRange& cell, std::uint32_t marks_needed,
 template <Region R, class Visit>
 void UniformGrid::search_all_cells(std::uint32_t levels, const R& region, Visit&& visit) const {
     for (std::uint32_t i = 0; i < table_.size(); ++i) {
-        if ((levels >> table_.key(i).level & 1) == 0 || !region.touches(homes_[i])) continue;
+        if ((levels >> table_.key(i).level & 1) == 0 || !region.touches(home_bounds_[i])) continue;
         if (!search_cell(cells_[i], all_marks, region, visit)) return;
     }
 }
@@ -179,35 +182,35 @@ template <Region R, class Visit> void UniformGrid::traverse(const R& region, Vis
     for (const Move& m : large_)
         if (region.touches(m.box) && !visit(m.proxy, m.box)) return;
     const Aabb bounds = region.bounds();
-    std::uint32_t dense = 0;  // levels of which the region may touch more cells than there are
+    std::uint32_t dense = 0;  // bit mask of the levels with fewer cells in use than the region covers
     for (std::size_t l = 0; l < level_count_; ++l) {
         const Level& level = levels_[l];
         if (level.boxes == 0) continue;
-        const CellRange range = common_part(level.frame.range(bounds), level.used);
+        const CellRange range = intersection(level.frame.range(bounds), level.used);
         if (range.count() > static_cast<double>(level.cells)) {
             dense |= 1u << l;
             continue;
         }
-        const bool all = for_each_cell(range, [&](const CellPlace& at) {
+        const bool completed = for_each_cell(range, [&](const CellCoord& at) {
             const std::uint32_t number = table_.find({at, static_cast<std::int32_t>(l)});
-            return number == CellTable::none || search_cell(cells_[number], later_axes(range, at), region, visit);
+            return number == no_index || search_cell(cells_[number], later_axes(range, at), region, visit);
         });
-        if (!all) return;
+        if (!completed) return;
     }
     if (dense != 0) search_all_cells(dense, region, visit);
 }
 
-/// One search for the nearest, level by level. Where it would go through more cells than there are, it goes through the
-/// cells themselves instead.
+/// A nearest-first search, level by level. Where it would visit more cells than are in use, it visits all cells in use
+/// instead.
 template <Measure M> class UniformGrid::Nearest {
 public:
     Nearest(const UniformGrid& grid, const M& measure, float limit) : grid_(grid), measure_(measure), limit_(limit) {}
 
     template <class Visit> void run(Visit& visit) {
         for (const Move& m : grid_.store_.unbounded())
-            if (!look_at(m.proxy, m.box, visit)) return;
+            if (!visit_box(m.proxy, m.box, visit)) return;
         for (const Move& m : grid_.large_)
-            if (!look_at(m.proxy, m.box, visit)) return;
+            if (!visit_box(m.proxy, m.box, visit)) return;
         for (std::size_t l = 0; l < grid_.level_count_; ++l)
             if (grid_.levels_[l].boxes != 0 && !search_level(l, visit)) return;
     }
@@ -217,35 +220,35 @@ private:
     const M& measure_;
     float limit_;
 
-    template <class Visit> bool look_at(Proxy p, const Aabb& box, Visit& visit) {
-        const float at = measure_.at(box, limit_);
-        return !(at < beyond) || take(p, box, at, visit);
+    template <class Visit> bool visit_box(Proxy p, const Aabb& box, Visit& visit) {
+        const float distance = measure_.distance(box, limit_);
+        return !(distance < infinite_distance) || report(p, box, distance, visit);
     }
-    template <class Visit> bool take(Proxy p, const Aabb& box, float at, Visit& visit) {
-        const float wanted = visit(p, box, at);
-        limit_ = wanted < limit_ ? wanted : limit_;
+    template <class Visit> bool report(Proxy p, const Aabb& box, float distance, Visit& visit) {
+        const float new_limit = visit(p, box, distance);
+        limit_ = new_limit < limit_ ? new_limit : limit_;
         return limit_ >= 0;
     }
 
     template <class Visit> bool search_level(std::size_t l, Visit& visit) {
         const Level& level = grid_.levels_[l];
-        const CellRange within = common_part(level.frame.range(measure_.bounds()), level.used);
+        const CellRange within = intersection(level.frame.range(measure_.bounds()), level.used);
         if (within.is_empty()) return true;
-        if (!within.has_endless_cells()) {
+        if (!within.has_border_cells()) {
             if constexpr (requires {
                               measure_.ray();
                               measure_.before();
                               measure_.after();
                           })
-                return along_ray(l, within, visit);
+                return search_along_ray(l, within, visit);
             else if constexpr (requires { measure_.point(); })
-                return around_point(l, within, visit);
+                return search_around_point(l, within, visit);
         }
-        return through_all(
+        return search_all_cells(
             l, [](const CellRange&) { return false; }, visit);
     }
 
-    template <class Visit> bool along_ray(std::size_t l, const CellRange& within, Visit& visit) {
+    template <class Visit> bool search_along_ray(std::size_t l, const CellRange& within, Visit& visit) {
         const Level& level = grid_.levels_[l];
         const RayCells ray(measure_.ray(), measure_.before(), measure_.after(), level.frame, within);
         double cells_left = static_cast<double>(level.cells) + 8;
@@ -254,48 +257,49 @@ private:
             const CellRange slice = ray.slice(i);
             cells_left -= slice.count() + 1;
             if (cells_left < 0) {
-                return through_all(
-                    l, [&](const CellRange& box) { return ray.met_before(box, i); }, visit);
+                return search_all_cells(
+                    l, [&](const CellRange& box) { return ray.visited_before(box, i); }, visit);
             }
-            const bool more = for_each_cell(slice, [&](const CellPlace& at) {
+            const bool go_on = for_each_cell(slice, [&](const CellCoord& at) {
                 return search(
-                    l, at, later_axes(slice, at), [&](const CellRange& box) { return ray.met_before(box, i); }, visit);
+                    l, at, later_axes(slice, at), [&](const CellRange& box) { return ray.visited_before(box, i); },
+                    visit);
             });
-            if (!more) return false;
+            if (!go_on) return false;
         }
         return true;
     }
 
-    template <class Visit> bool around_point(std::size_t l, const CellRange& within, Visit& visit) {
+    template <class Visit> bool search_around_point(std::size_t l, const CellRange& within, Visit& visit) {
         const Level& level = grid_.levels_[l];
         const Vec3d point = measure_.point();
-        const CellPlace centre{level.frame.cell(point.x, 0), level.frame.cell(point.y, 1),
+        const CellCoord centre{level.frame.cell(point.x, 0), level.frame.cell(point.y, 1),
                                level.frame.cell(point.z, 2)};
         const std::int64_t last = cells_to_end(centre, within);
         double cells_left = static_cast<double>(level.cells) + 32;
         for (std::int64_t radius = cells_between(centre, within); radius <= last; ++radius) {
-            // A cell so many cells away begins one side less away; the float that at() gives may be rounded down.
+            // The distance to a cell `radius` cells away is at least radius - 1 sides; distance() may be rounded down.
             if (static_cast<double>(radius - 1) * level.frame.side * (1 - 0x1p-20) > limit_) return true;
             const double across = 2 * static_cast<double>(radius) + 1;
-            cells_left -= across * across;  // of the 6 across², many are clipped
+            cells_left -= across * across;  // an estimate: a shell has about 6 across² cells, but many are clipped
             if (cells_left < 0) {
                 const auto seen = [&](const CellRange& box) {
-                    return cells_between(centre, common_part(box, within)) < radius;
+                    return cells_between(centre, intersection(box, within)) < radius;
                 };
-                return through_all(l, seen, visit);
+                return search_all_cells(l, seen, visit);
             }
-            const bool more = for_each_cell_of_shell(centre, radius, within, [&](const CellPlace& at) {
+            const bool go_on = for_each_cell_of_shell(centre, radius, within, [&](const CellCoord& at) {
                 return search(
                     l, at, 0, [&](const CellRange& box) { return !is_nearest(centre, box, within, at); }, visit);
             });
-            if (!more) return false;
+            if (!go_on) return false;
         }
         return true;
     }
-    /// Is `at` the one cell of the box that is nearest to the centre, on every axis?
-    static bool is_nearest(const CellPlace& centre, const CellRange& box, const CellRange& within,
-                           const CellPlace& at) {
-        const CellRange seen = common_part(box, within);
+    /// Returns whether `at` is the cell of the box that is nearest to the centre on every axis.
+    static bool is_nearest(const CellCoord& centre, const CellRange& box, const CellRange& within,
+                           const CellCoord& at) {
+        const CellRange seen = intersection(box, within);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::int32_t near = centre[k] < seen.lo[k]   ? seen.lo[k]
                                       : centre[k] > seen.hi[k] ? seen.hi[k]
@@ -305,27 +309,27 @@ private:
         return true;
     }
 
-    /// The boxes of one cell with those marks that were not seen before.
+    /// Visits the boxes of one cell that have the required marks and were not visited before.
     template <class Seen, class Visit>
-    bool search(std::size_t l, const CellPlace& at, std::uint32_t marks_needed, Seen&& seen, Visit& visit) {
+    bool search(std::size_t l, const CellCoord& at, std::uint32_t required_marks, Seen&& seen, Visit& visit) {
         const std::uint32_t number = grid_.table_.find({at, static_cast<std::int32_t>(l)});
-        return number == CellTable::none || search(l, grid_.cells_[number], marks_needed, seen, visit);
+        return number == no_index || search(l, grid_.cells_[number], required_marks, seen, visit);
     }
     template <class Seen, class Visit>
-    bool search(std::size_t l, const ScanRange& cell, std::uint32_t marks_needed, Seen&& seen, Visit& visit) {
+    bool search(std::size_t l, const ScanRange& cell, std::uint32_t required_marks, Seen&& seen, Visit& visit) {
         for (std::uint32_t i = cell.first; i < cell.end; ++i) {
-            if ((grid_.marks_[i] & marks_needed) != marks_needed) continue;
+            if ((grid_.marks_[i] & required_marks) != required_marks) continue;
             const Aabb box = grid_.entries_.box(i);
-            const float at = measure_.at(box, limit_);
-            if (!(at < beyond) || seen(grid_.levels_[l].frame.range(box))) continue;
-            if (!take(grid_.entries_.proxy(i), box, at, visit)) return false;
+            const float distance = measure_.distance(box, limit_);
+            if (!(distance < infinite_distance) || seen(grid_.levels_[l].frame.range(box))) continue;
+            if (!report(grid_.entries_.proxy(i), box, distance, visit)) return false;
         }
         return true;
     }
-    template <class Seen, class Visit> bool through_all(std::size_t l, Seen&& seen, Visit& visit) {
+    template <class Seen, class Visit> bool search_all_cells(std::size_t l, Seen&& seen, Visit& visit) {
         for (std::uint32_t i = 0; i < grid_.table_.size(); ++i) {
             if (static_cast<std::size_t>(grid_.table_.key(i).level) != l) continue;
-            if (!(measure_.at(grid_.homes_[i], limit_) < beyond)) continue;
+            if (!(measure_.distance(grid_.home_bounds_[i], limit_) < infinite_distance)) continue;
             if (!search(l, grid_.cells_[i], all_marks, seen, visit)) return false;
         }
         return true;

@@ -1,4 +1,4 @@
-/// How the wide tree follows its boxes: what waits for commit(), what is refitted, and when all is built anew.
+/// Updates of the wide tree: staging, refits and rebuilds.
 #include "fase/broad/wide_bvh.hpp"
 
 #include <algorithm>
@@ -9,127 +9,126 @@
 namespace fase::broad {
 
 using wide::leaf_bit;
-using wide::none;
 using wide::width;
 
 void WideBvh::insert(Proxy p, const Aabb& box) {
-    FASE_ASSERT(p < (none & ~leaf_bit));
-    if (p >= spots_.size()) spots_.resize(p + std::size_t{1});
-    FASE_ASSERT(spots_[p].where == Where::Nowhere);
-    spots_[p].awake = true;
-    put_in_list(p, box);
+    FASE_ASSERT(p < (no_index & ~leaf_bit));
+    if (p >= locations_.size()) locations_.resize(p + std::size_t{1});
+    FASE_ASSERT(locations_[p].where == Where::None);
+    locations_[p].awake = true;
+    add_to_list(p, box);
 }
 
 void WideBvh::move(Proxy p, const Aabb& box) {
-    FASE_ASSERT(p < spots_.size() && spots_[p].where != Where::Nowhere);
-    const Spot spot = spots_[p];
-    if (spot.where == Where::Tree && is_regular(box)) {
-        wide::Node& node = forest_.nodes[spot.at / width];
-        if (node.box(spot.at % width) == box) return;
-        node.set_box(spot.at % width, box);
-        touch(spot.at / width);
-    } else if (spot.where == Where::Tree) {
-        take_from_tree(p);
-        put_in_list(p, box);
-    } else if (is_regular(box) == (spot.where == Where::Fresh)) {
-        lists_[static_cast<int>(spot.where)][spot.at].box = box;
+    FASE_ASSERT(p < locations_.size() && locations_[p].where != Where::None);
+    const Location location = locations_[p];
+    if (location.where == Where::Tree && is_regular(box)) {
+        wide::Node& node = forest_.nodes[location.at / width];
+        if (node.box(location.at % width) == box) return;
+        node.set_box(location.at % width, box);
+        mark_dirty(location.at / width);
+    } else if (location.where == Where::Tree) {
+        remove_from_tree(p);
+        add_to_list(p, box);
+    } else if (is_regular(box) == (location.where == Where::Staged)) {
+        lists_[static_cast<int>(location.where)][location.at].box = box;
     } else {
-        take_from_list(p);
-        put_in_list(p, box);
+        remove_from_list(p);
+        add_to_list(p, box);
     }
 }
 
 void WideBvh::erase(Proxy p) {
-    FASE_ASSERT(p < spots_.size() && spots_[p].where != Where::Nowhere);
-    resting_ -= spots_[p].awake ? 0 : 1;
-    spots_[p].where == Where::Tree ? take_from_tree(p) : take_from_list(p);
-    spots_[p] = {};
+    FASE_ASSERT(p < locations_.size() && locations_[p].where != Where::None);
+    resting_ -= locations_[p].awake ? 0 : 1;
+    locations_[p].where == Where::Tree ? remove_from_tree(p) : remove_from_list(p);
+    locations_[p] = {};
 }
 
 void WideBvh::set_awake(Proxy p, bool awake) {
-    FASE_ASSERT(p < spots_.size() && spots_[p].where != Where::Nowhere);
-    if (spots_[p].awake == awake) return;
-    spots_[p].awake = awake;
+    FASE_ASSERT(p < locations_.size() && locations_[p].where != Where::None);
+    if (locations_[p].awake == awake) return;
+    locations_[p].awake = awake;
     awake ? --resting_ : ++resting_;
-    if (spots_[p].where == Where::Tree) set_awake_bit(spots_[p].at, awake);
+    if (locations_[p].where == Where::Tree) set_awake_bit(locations_[p].at, awake);
 }
 
 void WideBvh::clear() {
     forest_.clear();
-    spots_.clear();
+    locations_.clear();
     for (std::vector<Move>& list : lists_) list.clear();
     dirty_.clear();
     is_dirty_.clear();
-    in_trees_ = in_smaller_ = resting_ = moved_ = 0;
+    in_trees_ = in_secondary_ = resting_ = moved_ = 0;
     cost_ = min_cost_ = 0;
 }
 
 void WideBvh::build(std::span<const Move> boxes) {
     clear();
     for (const Move& m : boxes) insert(m.proxy, m.box);
-    rebuild(settings_.filled);
+    rebuild(settings_.build_method);
 }
 
 void WideBvh::commit() {
     constexpr std::size_t smallest_limit = 256;
-    const std::size_t fresh = lists_[0].size(), holes = forest_.holes.size();
-    const std::size_t in_main = in_trees_ - in_smaller_;
-    const auto limit = static_cast<std::size_t>(settings_.staged * static_cast<float>(in_main));
-    const bool many_fresh =
-        fresh > fresh_kept && in_smaller_ + fresh > std::min(in_main, std::max(smallest_limit, limit));
-    if (many_fresh || holes > in_trees_ / 4 + smallest_limit) {
-        rebuild(settings_.filled);
+    const std::size_t staged = lists_[0].size(), free_slots = forest_.free_slots.size();
+    const std::size_t in_primary = in_trees_ - in_secondary_;
+    const auto limit = static_cast<std::size_t>(settings_.staged * static_cast<float>(in_primary));
+    const bool too_many_staged =
+        staged > max_listed && in_secondary_ + staged > std::min(in_primary, std::max(smallest_limit, limit));
+    if (too_many_staged || free_slots > in_trees_ / 4 + smallest_limit) {
+        rebuild(settings_.build_method);
         return;
     }
     refit_moved();
-    if (fresh > fresh_kept) rebuild_smaller();
-    // A few boxes cannot spoil a tree, however far they go.
-    if (moved_ > in_trees_ / 8 && cost_ > static_cast<double>(settings_.worst_growth) * min_cost_) {
-        rebuild(settings_.spoilt);
+    if (staged > max_listed) rebuild_secondary();
+    // A few moved boxes do not degrade a tree, at any distance.
+    if (moved_ > in_trees_ / 8 && cost_ > static_cast<double>(settings_.max_growth) * min_cost_) {
+        rebuild(settings_.rebuild_method);
         return;
     }
-    std::sort(forest_.holes.begin(), forest_.holes.end());
+    std::sort(forest_.free_slots.begin(), forest_.free_slots.end());
 }
 
-void WideBvh::put_in_list(Proxy p, const Aabb& box) {
-    const Where where = is_regular(box) ? Where::Fresh : Where::Odd;
+void WideBvh::add_to_list(Proxy p, const Aabb& box) {
+    const Where where = is_regular(box) ? Where::Staged : Where::Unbounded;
     std::vector<Move>& list = lists_[static_cast<int>(where)];
-    spots_[p].where = where;
-    spots_[p].at = static_cast<std::uint32_t>(list.size());
+    locations_[p].where = where;
+    locations_[p].at = static_cast<std::uint32_t>(list.size());
     list.push_back({p, box});
 }
 
-void WideBvh::take_from_list(Proxy p) {
-    std::vector<Move>& list = lists_[static_cast<int>(spots_[p].where)];
-    const std::uint32_t at = spots_[p].at;
+void WideBvh::remove_from_list(Proxy p) {
+    std::vector<Move>& list = lists_[static_cast<int>(locations_[p].where)];
+    const std::uint32_t at = locations_[p].at;
     list[at] = list.back();
-    spots_[list[at].proxy].at = at;
+    locations_[list[at].proxy].at = at;
     list.pop_back();
 }
 
-/// Leaves a hole in the ids until all is built anew.
-void WideBvh::take_from_tree(Proxy p) {
-    const wide::Place place = spots_[p].at;
+/// Leaves a free slot in the ids until the next rebuild.
+void WideBvh::remove_from_tree(Proxy p) {
+    const wide::Place place = locations_[p].at;
     set_awake_bit(place, false);
     wide::Node& node = forest_.nodes[place / width];
     node.set_box(place % width, Aabb{});
-    node.link[place % width] = none;
-    forest_.holes.push_back(node.first[place % width]);
-    touch(place / width);
+    node.link[place % width] = no_index;
+    forest_.free_slots.push_back(node.first[place % width]);
+    mark_dirty(place / width);
     --in_trees_;
-    if (place / width >= first_of_smaller()) --in_smaller_;
+    if (place / width >= secondary_begin()) --in_secondary_;
 }
 
-void WideBvh::touch(std::uint32_t node) {
+void WideBvh::mark_dirty(std::uint32_t node) {
     ++moved_;
     if (is_dirty_[node] != 0) return;
     is_dirty_[node] = 1;
     dirty_.push_back(node);
 }
 
-/// Goes up as long as a node begins or ends to have something awake.
+/// Propagates upward while the awake state of a node changes.
 void WideBvh::set_awake_bit(wide::Place place, bool awake) {
-    for (; place != none; place = forest_.parents[place / width]) {
+    for (; place != no_index; place = forest_.parents[place / width]) {
         std::uint8_t& bits = forest_.awake[place / width];
         const bool any_before = bits != 0;
         const auto bit = static_cast<std::uint8_t>(1u << (place % width));
@@ -149,16 +148,16 @@ void WideBvh::refit_moved() {
     min_cost_ = std::min(min_cost_, cost_);
 }
 
-/// Until nothing changes any more.
+/// Refits the ancestors until one does not change.
 void WideBvh::refit_upwards(std::uint32_t node) {
-    for (wide::Place parent = forest_.parents[node]; parent != none; parent = forest_.parents[parent / width]) {
+    for (wide::Place parent = forest_.parents[node]; parent != no_index; parent = forest_.parents[parent / width]) {
         wide::Node& above = forest_.nodes[parent / width];
-        const Aabb before = above.box(parent % width), after = forest_.nodes[above.link[parent % width]].united();
+        const Aabb before = above.box(parent % width), after = forest_.nodes[above.link[parent % width]].merged();
         if (after == before) return;
         above.set_box(parent % width, after);
-        const double was = wide::cost_of(before);
-        cost_ += wide::cost_of(after) - was;
-        if (was > 1e6 * cost_) cost_ = cost_from(0);  // what is left would be mostly rounding
+        const double cost_before = wide::cost_of(before);
+        cost_ += wide::cost_of(after) - cost_before;
+        if (cost_before > 1e6 * cost_) cost_ = cost_from(0);  // cancellation: the difference is mostly rounding error
     }
 }
 
@@ -171,19 +170,19 @@ double WideBvh::cost_from(std::uint32_t node) const {
     return cost;
 }
 
-/// All boxes from a node on, and those that wait, into items_.
+/// Collects the boxes of all nodes from `first_node` on, and the staged boxes, in items_.
 void WideBvh::collect(std::uint32_t first_node) {
     items_.clear();
     for (std::size_t at = first_node; at < forest_.nodes.size(); ++at) {
         const wide::Node& node = forest_.nodes[at];
         for (std::uint32_t i = 0; i < width; ++i)
-            if (node.is_leaf(i) && node.link[i] != none) items_.push_back({node.box(i), node.link[i] & ~leaf_bit});
+            if (node.is_leaf(i) && node.link[i] != no_index) items_.push_back({node.box(i), node.link[i] & ~leaf_bit});
     }
     for (const Move& m : lists_[0]) items_.push_back({m.box, m.proxy});
     lists_[0].clear();
 }
 
-/// A tree of items_ behind what is there; its boxes below the root have yet to be refitted.
+/// Appends a tree of items_ to the forest; its inner boxes must be refitted afterwards.
 void WideBvh::append_tree(Build how) {
     const auto begin = static_cast<std::uint32_t>(forest_.nodes.size());
     how == Build::Area ? wide::append_by_area(items_, forest_) : wide::append_by_morton(items_, forest_, scratch_);
@@ -191,19 +190,19 @@ void WideBvh::append_tree(Build how) {
         const wide::Node& node = forest_.nodes[at];
         std::uint32_t awake = 0;
         for (std::uint32_t i = 0; i < width; ++i) {
-            if (node.link[i] == none) continue;
+            if (node.link[i] == no_index) continue;
             if (node.is_leaf(i)) {
-                Spot& spot = spots_[node.link[i] & ~leaf_bit];
-                spot.where = Where::Tree;
-                spot.at = wide::place_of(at, i);
-                awake |= spot.awake ? 1u << i : 0;
+                Location& location = locations_[node.link[i] & ~leaf_bit];
+                location.where = Where::Tree;
+                location.at = wide::place_of(at, i);
+                awake |= location.awake ? 1u << i : 0;
             } else {
                 awake |= forest_.awake[node.link[i]] != 0 ? 1u << i : 0;
             }
         }
         forest_.awake[at] = static_cast<std::uint8_t>(awake);
     }
-    keep_spare_room();
+    reserve_spare_nodes();
 }
 
 void WideBvh::rebuild(Build how) {
@@ -212,44 +211,44 @@ void WideBvh::rebuild(Build how) {
     dirty_.clear();
     is_dirty_.clear();
     in_trees_ = items_.size();
-    in_smaller_ = moved_ = 0;
+    in_secondary_ = moved_ = 0;
     if (!items_.empty()) append_tree(how);
     cost_ = min_cost_ = wide::refit(forest_, 0);
-    ++times_built_;
+    ++build_count_;
 }
 
-/// Nothing may be dirty.
-void WideBvh::rebuild_smaller() {
-    const std::uint32_t begin = first_of_smaller();
+/// Requires that no node is dirty.
+void WideBvh::rebuild_secondary() {
+    const std::uint32_t begin = secondary_begin();
     const double before = cost_from(begin);
     collect(begin);
-    in_trees_ += items_.size() - in_smaller_;
-    in_smaller_ = items_.size();
-    const std::uint32_t main_end = forest_.ends[0];
+    in_trees_ += items_.size() - in_secondary_;
+    in_secondary_ = items_.size();
+    const std::uint32_t primary_end = forest_.ends[0];
     forest_.nodes.resize(begin);
     forest_.parents.resize(begin);
     forest_.ends.resize(begin);
     forest_.awake.resize(begin);
     is_dirty_.resize(begin);
-    forest_.ids.resize(main_end);
+    forest_.ids.resize(primary_end);
     forest_.roots.resize(1);
-    std::erase_if(forest_.holes, [main_end](std::uint32_t hole) { return hole >= main_end; });
-    append_tree(settings_.spoilt);
+    std::erase_if(forest_.free_slots, [primary_end](std::uint32_t slot) { return slot >= primary_end; });
+    append_tree(settings_.rebuild_method);
     const double change = wide::refit(forest_, begin) - before;
     cost_ = std::max(0.0, cost_ + change);
     min_cost_ = std::max(0.0, min_cost_ + change);
 }
 
-/// So that a tree with a few nodes more does not allocate.
-void WideBvh::keep_spare_room() {
+/// Reserves capacity, so that a tree with a few more nodes does not allocate.
+void WideBvh::reserve_spare_nodes() {
     if (forest_.nodes.capacity() < forest_.nodes.size() + forest_.nodes.size() / 8) {
-        const std::size_t wanted = forest_.nodes.size() + forest_.nodes.size() / 4;
-        forest_.nodes.reserve(wanted);
-        forest_.parents.reserve(wanted);
-        forest_.ends.reserve(wanted);
-        forest_.awake.reserve(wanted);
-        is_dirty_.reserve(wanted);
-        dirty_.reserve(wanted);
+        const std::size_t capacity = forest_.nodes.size() + forest_.nodes.size() / 4;
+        forest_.nodes.reserve(capacity);
+        forest_.parents.reserve(capacity);
+        forest_.ends.reserve(capacity);
+        forest_.awake.reserve(capacity);
+        is_dirty_.reserve(capacity);
+        dirty_.reserve(capacity);
     }
     is_dirty_.resize(forest_.nodes.size(), 0);
 }

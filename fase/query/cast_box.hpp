@@ -1,5 +1,5 @@
 #pragma once
-/// What a box meets that is carried along a straight line without turning: the frame of every shape cast.
+/// Box casts: a box swept along a straight line without rotation. The basis of all shape casts.
 #include <algorithm>
 #include <vector>
 
@@ -7,32 +7,32 @@
 
 namespace fase::query {
 
-/// A box on its way. It reaches from `before` (0 or less) to `after` (0 or more) around the ray's origin.
+/// A box that moves along a ray. It extends from `lo` (0 or less) to `hi` (0 or more) around the ray's origin.
 struct SweptBox {
     Ray ray;
-    Vec3 before, after;
+    Vec3 lo, hi;
 };
 
-/// A finite box that moves `length` metres along the unit vector `direction`; the ray starts at its centre.
-[[nodiscard]] inline SweptBox carry(const Aabb& box, Vec3 direction, float length) {
+/// Returns a finite box that moves `length` metres along the unit vector `direction`. The ray starts at its centre.
+[[nodiscard]] inline SweptBox sweep_box(const Aabb& box, Vec3 direction, float length) {
     const Vec3d origin = (to_double(box.lo) + to_double(box.hi)) * 0.5;
     const Aabb around = rounded_outward(to_double(box.lo) - origin, to_double(box.hi) - origin);
     return {{origin, direction, length}, around.lo, around.hi};
 }
 
-/// The first box that the carried one touches on its way, `at` metres from the start; 0 when they touch from there.
-/// Nearest and ties as with a ray: the smallest (at, proxy). `exact` answers for the things in the two boxes.
+/// Returns the first box that the swept box touches; its distance is 0 when they touch at the start. As for rays, the
+/// result is the smallest (distance, proxy). `exact` computes the distance between the objects in the two boxes.
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] std::optional<Hit> nearest_hit(const S& structure, const SweptBox& box, E&& exact = {},
                                              A&& accepts = {}) {
-    return min_hit(structure, broad::RayMeasure(box.ray, box.before, box.after), box.ray.length, exact, accepts);
+    return min_hit(structure, broad::RayMeasure(box.ray, box.lo, box.hi), box.ray.length, exact, accepts);
 }
 
-/// Whether the carried box touches anything on its way.
+/// Returns whether the swept box touches anything; stops at the first hit.
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] bool any_hit(const S& structure, const SweptBox& box, E&& exact = {}, A&& accepts = {}) {
     bool any = false;
-    const broad::RayMeasure measure(box.ray, box.before, box.after);
+    const broad::RayMeasure measure(box.ray, box.lo, box.hi);
     search(structure, measure, box.ray.length, exact, accepts, [&](const Hit&) {
         any = true;
         return -1.0f;
@@ -40,11 +40,11 @@ template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
     return any;
 }
 
-/// Appends all that the carried box touches on its way, in order of (at, proxy).
+/// Appends all boxes that the swept box touches, sorted by (distance, proxy).
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 void all_hits(const S& structure, const SweptBox& box, std::vector<Hit>& out, E&& exact = {}, A&& accepts = {}) {
     const auto first = static_cast<std::ptrdiff_t>(out.size());
-    const broad::RayMeasure measure(box.ray, box.before, box.after);
+    const broad::RayMeasure measure(box.ray, box.lo, box.hi);
     search(structure, measure, box.ray.length, exact, accepts, [&](const Hit& hit) {
         out.push_back(hit);
         return box.ray.length;

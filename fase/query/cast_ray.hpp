@@ -1,5 +1,5 @@
 #pragma once
-/// What a ray meets: the nearest, whether anything, or all of it.
+/// Ray casts: the nearest hit, any hit, or all hits.
 #include <algorithm>
 #include <vector>
 
@@ -7,15 +7,15 @@
 
 namespace fase::query {
 
-/// The nearest thing on the ray, no farther than `ray.length`; nullopt: none. Of those as far, the one with the
-/// smallest proxy, so every structure gives the same answer. `exact` meets the thing in a box (default: the box
-/// itself); a ray that starts inside a box enters it at 0. Cost: O(log n) boxes in a tree when they are spread.
+/// Returns the nearest hit within `ray.length`; nullopt when there is none. Of equal distances, the smallest proxy
+/// wins, so every structure gives the same result. `exact` computes the hit with the object in a box (default: the box
+/// itself). A ray that starts inside a box hits it at 0. Cost: O(log n) boxes in a tree when the boxes overlap little.
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] std::optional<Hit> nearest_hit(const S& structure, const Ray& ray, E&& exact = {}, A&& accepts = {}) {
     return min_hit(structure, broad::RayMeasure(ray), ray.length, exact, accepts);
 }
 
-/// Whether the ray meets anything; ends with the first that is found. For shadows and lines of sight.
+/// Returns whether the ray hits anything; stops at the first hit. For shadows and lines of sight.
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 [[nodiscard]] bool any_hit(const S& structure, const Ray& ray, E&& exact = {}, A&& accepts = {}) {
     bool any = false;
@@ -26,7 +26,7 @@ template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
     return any;
 }
 
-/// Appends all that the ray meets, in order of (at, proxy).
+/// Appends all hits of the ray, sorted by (distance, proxy).
 template <broad::Searchable S, Exact E = BoxItself, Filter A = AcceptAll>
 void all_hits(const S& structure, const Ray& ray, std::vector<Hit>& out, E&& exact = {}, A&& accepts = {}) {
     const auto first = static_cast<std::ptrdiff_t>(out.size());

@@ -1,5 +1,5 @@
 #pragma once
-/// What a camera sees.
+/// Frustum culling.
 #include <span>
 #include <vector>
 
@@ -7,19 +7,20 @@
 
 namespace fase::query {
 
-/// Appends to `inside` the proxies of all boxes that are wholly or partly inside, and to `partly` (may be null) those
-/// of them that are only partly so: those alone want a closer look. Each once, in the structure's own order; trees take
-/// whole branches at once. A box beyond an edge of the frustum, but outside none of its planes, may count as partly in.
+/// Appends to `inside` the proxies of all boxes that are completely or partly inside the region, and to `partly` (may
+/// be null) those that are only partly inside and may need an exact test. Each box once, in the order of the structure.
+/// Branches of a tree that are inside are added without further tests. A box outside the frustum near one of its edges
+/// counts as partly inside when it is outside none of the planes.
 template <broad::Searchable S, broad::SolidRegion R>
 void cull(const S& structure, const R& region, std::vector<broad::Proxy>& inside,
           std::vector<broad::Proxy>* partly = nullptr) {
-    broad::cull(structure, region, [&](std::span<const broad::Proxy> proxies, bool whole) {
+    broad::cull(structure, region, [&](std::span<const broad::Proxy> proxies, bool completely) {
         if (proxies.size() == 1) {
             inside.push_back(proxies.front());
         } else {
             inside.insert(inside.end(), proxies.begin(), proxies.end());
         }
-        if (!whole && partly != nullptr) partly->insert(partly->end(), proxies.begin(), proxies.end());
+        if (!completely && partly != nullptr) partly->insert(partly->end(), proxies.begin(), proxies.end());
     });
 }
 
@@ -30,8 +31,8 @@ void cull(const S& structure, const Frustum& frustum, std::vector<broad::Proxy>&
     cull(structure, broad::FrustumRegion(frustum), inside, partly);
 }
 
-/// The same for what a projection × view matrix shows (column-major; see frustum_of() for what is refused). Nothing is
-/// appended when the matrix is refused.
+/// The same for a projection × view matrix (column-major). Returns the error of frustum_of() for an invalid matrix, and
+/// appends nothing then.
 template <broad::Searchable S>
 Result<void> cull(const S& structure, std::span<const float, 16> view_projection, ClipDepth depth,
                   std::vector<broad::Proxy>& inside, std::vector<broad::Proxy>* partly = nullptr) {

@@ -1,75 +1,73 @@
 #pragma once
-/// What a search along a ray or around a point finds, and the core that all such searches share.
+/// The result of ray casts and nearest searches, and the search that they share.
 #include <compare>
 #include <concepts>
 #include <optional>
 
 #include "fase/broad/search/nearest_first.hpp"
+#include "fase/core/no_index.hpp"
 
 namespace fase::query {
 
-using broad::beyond;
+using broad::infinite_distance;
 using broad::Proxy;
 
-/// No proxy: of a Hit that met nothing.
-inline constexpr Proxy nothing = 0xffffffff;
-
-/// A stored box that was met, or the thing in it. Ordered by `at`, then by proxy. Default: nothing was met.
+/// A hit with a stored box or the object in it. Ordered by distance, then by proxy. Default: no hit.
 struct Hit {
-    float at = beyond;      ///< metres from the ray's origin, or from the point
-    Proxy proxy = nothing;  ///< `nothing` when nothing was met
+    float distance = infinite_distance;  ///< metres from the ray's origin, or from the point
+    Proxy proxy = no_index;              ///< no_index: no hit
     friend constexpr auto operator<=>(const Hit&, const Hit&) = default;
-    [[nodiscard]] constexpr bool met() const { return proxy != nothing; }
+    [[nodiscard]] constexpr bool is_hit() const { return proxy != no_index; }
 };
 
-/// Tells how far the thing is whose box was met: exact(proxy, box, entry, limit), with `entry` how far the box is and
-/// `limit` from where on nobody is interested. The answer is in metres; `beyond` when the thing is not met. An answer
-/// below `entry` counts as `entry`, so that what is found does not depend on the order of the search.
+/// Returns the distance to the object in a box: exact(proxy, box, entry, limit), in metres. `entry` is the distance to
+/// the box; results above `limit` are ignored. Return `infinite_distance` when the object is missed. A result below
+/// `entry` counts as `entry`, so that hits do not depend on the order of the search.
 template <class E>
 concept Exact = requires(E&& exact, Proxy p, const Aabb& box, float entry, float limit) {
     { exact(p, box, entry, limit) } -> std::convertible_to<float>;
 };
 
-/// Which proxies count.
+/// A predicate: false ignores a proxy.
 template <class A>
 concept Filter = std::predicate<A&, Proxy>;
 
-/// The box is the thing.
+/// The default `exact`: the distance to the box itself.
 struct BoxItself {
     [[nodiscard]] float operator()(Proxy, const Aabb&, float entry, float) const { return entry; }
 };
 
-/// Every proxy counts.
+/// The default filter: accepts every proxy.
 struct AcceptAll {
     [[nodiscard]] bool operator()(Proxy) const { return true; }
 };
 
-/// Calls `found(hit)` for each thing that is met within `limit` metres, in no order that counts; `found` returns how
-/// far the search goes on from there (below 0: it ends).
+/// Calls `found(hit)` for each object that is hit within `limit` metres, in unspecified order. `found` returns the new
+/// search distance; below 0 stops the search.
 template <broad::Searchable S, broad::Measure M, Exact E, Filter A, class Found>
 void search(const S& structure, const M& measure, float limit, E&& exact, A&& accepts, Found&& found) {
     float reach = limit;
     broad::nearest_first(structure, measure, limit, [&](Proxy p, const Aabb& box, float entry) -> float {
         if (!accepts(p)) return reach;
-        float at = exact(p, box, entry, reach);
-        if (at < entry) at = entry;
-        if (at <= reach && at < beyond) {
-            const float wanted = found(Hit{at, p});
-            reach = wanted < reach ? wanted : reach;
+        float distance = exact(p, box, entry, reach);
+        if (distance < entry) distance = entry;
+        if (distance <= reach && distance < infinite_distance) {
+            const float limit_now = found(Hit{distance, p});
+            reach = limit_now < reach ? limit_now : reach;
         }
         return reach;
     });
 }
 
-/// The least hit within `limit` metres; of those as far, the smallest proxy: every structure gives the same.
+/// Returns the smallest hit (distance, then proxy) within `limit` metres; the same for every structure.
 template <broad::Searchable S, broad::Measure M, Exact E, Filter A>
 [[nodiscard]] std::optional<Hit> min_hit(const S& structure, const M& measure, float limit, E&& exact, A&& accepts) {
-    Hit least;
+    Hit nearest;
     search(structure, measure, limit, exact, accepts, [&](const Hit& hit) {
-        if (hit < least) least = hit;
-        return least.at;
+        if (hit < nearest) nearest = hit;
+        return nearest.distance;
     });
-    return least.met() ? std::optional(least) : std::nullopt;
+    return nearest.is_hit() ? std::optional(nearest) : std::nullopt;
 }
 
 }  // namespace fase::query

@@ -1,5 +1,5 @@
 #pragma once
-/// The answers to many questions of which each has a list for an answer.
+/// A list of results for each query of a batch.
 #include <span>
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace fase::query {
 
-/// Lists in one row: list i is the answer to question i. Keeps its memory from use to use.
+/// Lists in one array: list i is the result of query i. Reuses its memory.
 template <class T> class Lists {
 public:
     [[nodiscard]] std::size_t size() const { return begins_.size() - 1; }
     [[nodiscard]] std::span<const T> operator[](std::size_t i) const {
         return std::span(items_).subspan(begins_[i], begins_[i + 1] - begins_[i]);
     }
-    /// All lists, one after the other.
+    /// Returns all lists, concatenated.
     [[nodiscard]] std::span<const T> items() const { return items_; }
 
-    /// Replaces everything: `ask(i, out)` appends the answer to question i to `out`; called once for each i below
-    /// `count`, at most `grain` of them in a row, by the threads of `tasks`. What comes out does not depend on them.
-    template <class Ask> void fill(TaskRunner& tasks, std::size_t count, std::size_t grain, const Ask& ask) {
+    /// Replaces all lists: runs `query(i, out)`, which appends the result of query i to `out`, once for each i below
+    /// `count`, on the threads of `tasks` in chunks of `grain`. The result does not depend on the threads.
+    template <class Query> void fill(TaskRunner& tasks, std::size_t count, std::size_t grain, const Query& query) {
         const std::size_t chunks = (count + grain - 1) / grain;
         if (parts_.size() < chunks) parts_.resize(chunks);
         begins_.assign(count + 1, 0);
@@ -27,7 +27,7 @@ public:
             std::vector<T>& part = parts_[begin / grain];
             part.clear();
             for (std::size_t i = begin; i < end; ++i) {
-                ask(i, part);
+                query(i, part);
                 begins_[i + 1] = part.size();  // within the part, for now
             }
         });
@@ -42,8 +42,8 @@ public:
 
 private:
     std::vector<T> items_;
-    std::vector<std::size_t> begins_{0};  // of each list in items_, and the end
-    std::vector<std::vector<T>> parts_;   // one a range of questions; scratch
+    std::vector<std::size_t> begins_{0};  // begin of each list in items_, then the end
+    std::vector<std::vector<T>> parts_;   // one for each chunk of queries; scratch
 };
 
 }  // namespace fase::query

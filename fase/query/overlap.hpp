@@ -1,5 +1,5 @@
 #pragma once
-/// Which boxes a region touches, and which a point is in.
+/// Overlap queries with regions and points.
 #include <algorithm>
 #include <vector>
 
@@ -8,26 +8,26 @@
 
 namespace fase::query {
 
-/// A region whose touches() lets pass some boxes that its meets() then refuses.
+/// A region with a conservative touches() and an exact touches_exactly().
 template <class R>
 concept TwoStepRegion = broad::Region<R> && requires(const R& region, const Aabb& box) {
-    { region.meets(box) } -> std::same_as<bool>;
+    { region.touches_exactly(box) } -> std::same_as<bool>;
 };
 
-/// Calls `visit(proxy, box)` once for each stored box that the region touches (and meets), in the structure's own
-/// order; false stops.
+/// Calls `visit(proxy, box)` once for each stored box that the region touches, in the order of the structure, until
+/// `visit` returns false.
 template <broad::Searchable S, broad::Region R, class Visit>
 void for_each_overlapping(const S& structure, const R& region, Visit&& visit) {
     structure.traverse(region, [&](broad::Proxy p, const Aabb& box) -> bool {
         if constexpr (TwoStepRegion<R>) {
-            if (!region.meets(box)) return true;
+            if (!region.touches_exactly(box)) return true;
         }
         return visit(p, box);
     });
 }
 
-/// Appends the proxies of all boxes that the region touches, in ascending order: the same from every structure.
-/// Touching counts.
+/// Appends the proxies of all boxes that the region touches, in ascending order: the same for every structure. Touching
+/// counts.
 template <broad::Searchable S, broad::Region R>
 void overlapping(const S& structure, const R& region, std::vector<broad::Proxy>& out) {
     const auto first = static_cast<std::ptrdiff_t>(out.size());
@@ -43,12 +43,12 @@ template <broad::Searchable S> void overlapping(const S& structure, const Aabb& 
     overlapping(structure, broad::BoxRegion{box}, out);
 }
 
-/// Appends the proxies of all boxes that the point is in, faces included, in ascending order.
+/// Appends the proxies of all boxes that contain the point, faces included, in ascending order.
 template <broad::Searchable S> void containing(const S& structure, Vec3d point, std::vector<broad::Proxy>& out) {
     overlapping(structure, PointRegion(point), out);
 }
 
-/// Whether the region touches any box; ends with the first.
+/// Returns whether the region touches any box; stops at the first.
 template <broad::Searchable S, broad::Region R> [[nodiscard]] bool any_overlap(const S& structure, const R& region) {
     bool any = false;
     for_each_overlapping(structure, region, [&](broad::Proxy, const Aabb&) {

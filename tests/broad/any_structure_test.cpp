@@ -5,7 +5,7 @@
 namespace fase::broad {
 namespace {
 
-TEST(AnyStructure, RefusesAnUnknownNameAndListsTheKnownOnes) {
+TEST(AnyStructure, RejectsAnUnknownNameAndListsTheKnownOnes) {
     const Result<AnyStructure> found = AnyStructure::named("octopus");
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().status, Status::BadArgument);
@@ -14,7 +14,7 @@ TEST(AnyStructure, RefusesAnUnknownNameAndListsTheKnownOnes) {
         [&]<Structure S>() { EXPECT_NE(found.error().text().find(S::info.name), std::string::npos) << S::info.name; });
 }
 
-TEST(AnyStructure, IsWhatItIsNamed) {
+TEST(AnyStructure, IsTheStructureOfItsName) {
     for_each_structure([]<Structure S>() {
         const Result<AnyStructure> found = AnyStructure::named(S::info.name);
         ASSERT_TRUE(found);
@@ -26,7 +26,7 @@ TEST(AnyStructure, IsWhatItIsNamed) {
     EXPECT_EQ(AnyStructure{}.info().name, default_structure);
 }
 
-TEST(AnyStructure, DrawsTheCellsOfAStructureThatHasSome) {
+TEST(AnyStructure, ReturnsTheCellsOfStructuresWithCells) {
     AnyStructure tree = *AnyStructure::named("dynamic_bvh"), list = *AnyStructure::named("brute_force");
     std::vector<Move> boxes;
     for (Proxy p = 0; p < 10; ++p) {
@@ -47,7 +47,7 @@ TEST(AnyStructure, DrawsTheCellsOfAStructureThatHasSome) {
     EXPECT_EQ(cells[0].box, (Aabb{{0, 0, 0}, {9.5f, 1, 1}}));
 }
 
-TEST(AnyStructure, IsCopiedWithAllItHolds) {
+TEST(AnyStructure, IsCopiedDeeply) {
     for_each_structure([]<Structure S>() {
         AnyStructure one = *AnyStructure::named(S::info.name);
         const Move box{3, {{0, 0, 0}, {1, 1, 1}}};

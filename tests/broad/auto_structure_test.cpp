@@ -27,17 +27,21 @@ AnyStructure filled(std::string_view name, std::span<const Move> boxes) {
     return structure;
 }
 
-TEST(AutoStructure, TriesAllOfFewAndSortsMany) {
-    EXPECT_EQ(auto_structure({10}, {}), "brute_force");
-    EXPECT_EQ(auto_structure({10000}, {}), "row_grid");
-    EXPECT_NE(reason_for("brute_force"), reason_for("row_grid"));
-    EXPECT_TRUE(reason_for("octree").empty());
-    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked})
+TEST(AutoStructure, ChoosesBruteForceForFewAndRowGridForManyBoxes) {
+    EXPECT_EQ(choose_structure({10}, {}), "brute_force");
+    EXPECT_EQ(choose_structure({10000}, {}), "row_grid");
+    EXPECT_EQ(choose_structure({.boxes = 4, .use = BoxUse::AnswersQueries}, {}), "brute_force");
+    EXPECT_EQ(choose_structure({.boxes = 100, .use = BoxUse::AnswersQueries}, {}), "wide_bvh");
+    EXPECT_EQ(choose_structure({.boxes = 10000, .use = BoxUse::AnswersQueries}, {}), "wide_bvh");
+    EXPECT_NE(choice_reason("wide_bvh"), choice_reason("row_grid"));
+    EXPECT_NE(choice_reason("brute_force"), choice_reason("row_grid"));
+    EXPECT_TRUE(choice_reason("octree").empty());
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsQueried})
         for (const bool flat : {false, true})
-            for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to trying all as the number grows
+            for (const float spread : {1.0f, 100.0f, Aabb::infinity}) {  // never back to brute force as the count grows
                 bool sorts = false;
                 for (std::size_t n = 0; n < 1000; ++n) {
-                    const bool now = auto_structure({n, spread, flat, use}, {}) == "row_grid";
+                    const bool now = choose_structure({n, spread, flat, use}, {}) == "row_grid";
                     EXPECT_TRUE(now || !sorts) << n;
                     sorts = now;
                 }
@@ -45,15 +49,15 @@ TEST(AutoStructure, TriesAllOfFewAndSortsMany) {
             }
 }
 
-TEST(AutoStructure, DoesNotFlicker) {
-    // A count that goes up and down by a tenth changes the structure at most once.
-    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsAsked}) {
+TEST(AutoStructure, HasHysteresis) {
+    // A count that varies by a tenth changes the structure at most once.
+    for (const BoxUse use : {BoxUse::FindsPairs, BoxUse::IsQueried}) {
         for (std::size_t middle = 20; middle < 1000; middle += 5) {
-            std::string_view current = auto_structure({.boxes = middle, .use = use}, {});
+            std::string_view current = choose_structure({.boxes = middle, .use = use}, {});
             int changes = 0;
             for (int i = 0; i < 10; ++i) {
                 const std::size_t n = i % 2 == 0 ? middle * 10 / 11 : middle * 11 / 10;
-                const std::string_view next = auto_structure({.boxes = n, .use = use}, current);
+                const std::string_view next = choose_structure({.boxes = n, .use = use}, current);
                 changes += next != current ? 1 : 0;
                 current = next;
             }
@@ -62,26 +66,26 @@ TEST(AutoStructure, DoesNotFlicker) {
     }
 }
 
-TEST(AutoStructure, LooksAtSizesAndPlacesWhereTheyMatter) {
-    AnyStructure alike = filled("brute_force", row_of(100)), unlike = filled("brute_force", row_of(100, 9));
-    suit(alike, BoxUse::FindsPairs);
-    EXPECT_EQ(alike.info().name, "brute_force") << "not looked at closely";
-    suit(alike, BoxUse::IsAsked, true);
-    EXPECT_EQ(alike.info().name, "brute_force") << "few for those who ask";
-    suit(alike, BoxUse::FindsPairs, true);
-    suit(unlike, BoxUse::FindsPairs, true);
-    EXPECT_EQ(alike.info().name, "row_grid");
-    EXPECT_EQ(unlike.info().name, "brute_force");
-    std::vector<Move> cube;
+TEST(AutoStructure, InspectsSizesAndPositionsWhereTheyMatter) {
+    AnyStructure equal = filled("brute_force", row_of(100)), mixed = filled("brute_force", row_of(100, 9));
+    update_auto_structure(equal, BoxUse::FindsPairs);
+    EXPECT_EQ(equal.info().name, "brute_force") << "without inspect_sizes";
+    update_auto_structure(equal, BoxUse::IsQueried, true);
+    EXPECT_EQ(equal.info().name, "brute_force") << "few for a queried set";
+    update_auto_structure(equal, BoxUse::FindsPairs, true);
+    update_auto_structure(mixed, BoxUse::FindsPairs, true);
+    EXPECT_EQ(equal.info().name, "row_grid");
+    EXPECT_EQ(mixed.info().name, "brute_force");
+    std::vector<Move> lattice;
     for (Proxy p = 0; p < 100; ++p)
-        cube.push_back({p, {{float(p % 5) * 2, float(p / 5 % 5) * 2, float(p / 25) * 2}, {}}});
-    for (Move& m : cube) m.box.hi = m.box.lo + Vec3{1, 1, 1};
-    EXPECT_FALSE(statistics_of(cube, BoxUse::FindsPairs).flat);
+        lattice.push_back({p, {{float(p % 5) * 2, float(p / 5 % 5) * 2, float(p / 25) * 2}, {}}});
+    for (Move& m : lattice) m.box.hi = m.box.lo + Vec3{1, 1, 1};
+    EXPECT_FALSE(statistics_of(lattice, BoxUse::FindsPairs).flat);
     EXPECT_TRUE(statistics_of(row_of(100), BoxUse::FindsPairs).flat);
     EXPECT_FLOAT_EQ(statistics_of(row_of(100, 9), BoxUse::FindsPairs).size_spread, 9);
 }
 
-TEST(AutoStructure, EveryStructureBecomesEveryOther) {
+TEST(AutoStructure, ConvertsEveryStructureToEveryOther) {
     for_each_structure([]<Structure From>() {
         for_each_structure([]<Structure To>() {
             std::vector<Move> boxes = row_of(40);
@@ -89,15 +93,15 @@ TEST(AutoStructure, EveryStructureBecomesEveryOther) {
             boxes.push_back({50, Aabb::everything()});
             boxes.push_back({61, {{nan, 0, 0}, {1, 1, 1}}});
             AnyStructure structure = filled(From::info.name, boxes);
-            const std::vector<Proxy> resting{3, 4, 5, 50};
-            structure.set_awake(resting, false);
-            const std::vector<Proxy> gone{7};
-            structure.erase(gone);  // not committed yet
+            const std::vector<Proxy> sleeping{3, 4, 5, 50};
+            structure.set_awake(sleeping, false);
+            const std::vector<Proxy> erased{7};
+            structure.erase(erased);  // not committed yet
             structure.convert_to(*AnyStructure::named(To::info.name));
             EXPECT_EQ(structure.info().name, To::info.name);
             EXPECT_EQ(structure.size(), boxes.size() - 1);
             EXPECT_EQ(structure.broken_invariant(), "");
-            for (const Proxy p : resting) EXPECT_FALSE(structure.is_awake(p));
+            for (const Proxy p : sleeping) EXPECT_FALSE(structure.is_awake(p));
             EXPECT_TRUE(structure.is_awake(6));
             std::vector<Pair> pairs;
             structure.find_awake_pairs(pairs);
@@ -109,8 +113,8 @@ TEST(AutoStructure, EveryStructureBecomesEveryOther) {
     });
 }
 
-TEST(AutoStructure, AnExplosionOfFewMakesManyAtOnce) {
-    // Nearly all are asleep, then all wake in one frame: the few awake ones were tried one by one.
+TEST(AutoStructure, ConvertsWhenAllBoxesWakeInOneFrame) {
+    // All boxes but one sleep, then all wake in one frame: the awake set was brute force.
     std::vector<Aabb> boxes;
     for (const Move& m : row_of(5000)) boxes.push_back(m.box);
     std::vector<MotionState> motion_states(boxes.size(), MotionState::Asleep);

@@ -21,7 +21,7 @@ TEST(BruteForce, CountsTouchingAsOverlapping) {
     EXPECT_EQ(pairs, (std::vector<Pair>{{2, 4}, {2, 9}}));
 }
 
-TEST(BruteForce, LetsNothingTouchABoxWithoutANumber) {
+TEST(BruteForce, FindsNoPairsOfABoxWithANaN) {
     BruteForce boxes;
     const float nan = std::nanf("");
     boxes.insert(0, Aabb::everything());
@@ -31,8 +31,8 @@ TEST(BruteForce, LetsNothingTouchABoxWithoutANumber) {
     EXPECT_TRUE(pairs.empty());
 }
 
-/// The judge's own judge: overlaps() on each two boxes, over the edges of the blocks that find_pairs() works in.
-TEST(BruteForce, FindsWhatTheDefinitionSays) {
+/// The definition tests the reference: overlaps() of each two boxes, for counts around the block size of find_pairs().
+TEST(BruteForce, FindsThePairsOfTheDefinition) {
     for (const std::size_t count : {0, 1, 2, 63, 64, 65, 66, 129, 200}) {
         Random random(count);
         BruteForce boxes;
@@ -52,7 +52,7 @@ TEST(BruteForce, FindsWhatTheDefinitionSays) {
     }
 }
 
-TEST(BruteForce, LeavesOutPairsThatRestWhateverTheOrderOfSleepAndDeath) {
+TEST(BruteForce, SkipsRestingPairsAfterAnyOrderOfChanges) {
     Random random(7);
     BruteForce boxes;
     std::vector<Proxy> alive;

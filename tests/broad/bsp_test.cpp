@@ -5,7 +5,7 @@
 namespace fase::broad {
 namespace {
 
-TEST(Bsp, IsSoundOnHardSets) {
+TEST(Bsp, IsCorrectOnHardSets) {
     for (const auto& [name, boxes] : hard_sets()) {
         SCOPED_TRACE(name);
         Bsp tree;
@@ -13,9 +13,9 @@ TEST(Bsp, IsSoundOnHardSets) {
     }
 }
 
-TEST(Bsp, IsSoundOnSetsOfOthers) {
+TEST(Bsp, IsCorrectOnThirdPartySets) {
     for (const char* file : {"bounds01.txt", "bounds02.txt", "bounds03.txt"}) {
-        const std::vector<Move> boxes = boxes_of_others(file);
+        const std::vector<Move> boxes = boxes_from_file(file);
         if (boxes.empty()) GTEST_SKIP() << "skipped: " << file << " is missing";
         Bsp tree;
         ASSERT_NO_FATAL_FAILURE(expect_sound(tree, boxes));
@@ -23,7 +23,7 @@ TEST(Bsp, IsSoundOnSetsOfOthers) {
 }
 
 TEST(Bsp, CutsAlongSharedFaces) {
-    // A row of blocks as in a level, wall by wall: every cut goes along a face, and splits none.
+    // A row of touching blocks, as in a level: every plane is at a shared face and splits no block.
     std::vector<Aabb> blocks;
     for (int i = 0; i < 64; ++i) blocks.push_back(cube({static_cast<float>(i), 0, 0}));
     Bsp tree(Bsp::Settings{.leaf_boxes = 1});
@@ -34,30 +34,30 @@ TEST(Bsp, CutsAlongSharedFaces) {
         EXPECT_EQ(leaf.proxies.size(), 1u);
     });
     EXPECT_EQ(leaves, 64u);
-    EXPECT_EQ(tree.nodes(), 2 * leaves - 1) << "some cut had a child astride";
+    EXPECT_EQ(tree.nodes(), 2 * leaves - 1) << "a plane has straddling boxes";
     EXPECT_EQ(sorted_pairs(tree).size(), 63u);  // neighbours touch
 }
 
 TEST(Bsp, WeighsSplitsAgainstBalance) {
-    const std::vector<Move> boxes = boxes_of_others("bounds02.txt");
+    const std::vector<Move> boxes = boxes_from_file("bounds02.txt");
     if (boxes.empty()) GTEST_SKIP() << "skipped: the boxes are missing";
-    Bsp balanced(Bsp::Settings{.weights = {1, 0}}), whole(Bsp::Settings{.weights = {0.01f, 10}});
-    for (Bsp* tree : {&balanced, &whole}) ASSERT_NO_FATAL_FAILURE(expect_sound(*tree, boxes));
-    EXPECT_LT(stats_of(balanced).depth, stats_of(whole).depth);
+    Bsp balanced(Bsp::Settings{.weights = {1, 0}}), few_splits(Bsp::Settings{.weights = {0.01f, 10}});
+    for (Bsp* tree : {&balanced, &few_splits}) ASSERT_NO_FATAL_FAILURE(expect_sound(*tree, boxes));
+    EXPECT_LT(stats_of(balanced).depth, stats_of(few_splits).depth);
 }
 
-TEST(Bsp, LooksAtFewBoxesForASmallQuestion) {
+TEST(Bsp, TestsFewBoxesInASmallQuery) {
     const std::vector<Move> boxes = random_cubes(20000, 100, 3);
     Bsp tree;
     tree.build(boxes);
-    std::size_t asked = 0, met = 0;
+    std::size_t tests = 0, met = 0;
     for (std::size_t i = 0; i < boxes.size(); i += 100)
-        tree.traverse(CountingRegion{boxes[i].box, asked}, [&](Proxy, const Aabb&) { return ++met > 0; });
+        tree.traverse(CountingRegion{boxes[i].box, tests}, [&](Proxy, const Aabb&) { return ++met > 0; });
     EXPECT_GE(met, 200u);
-    EXPECT_LT(asked, 200u * 200);
+    EXPECT_LT(tests, 200u * 200);
 }
 
-TEST(Bsp, SurvivesSettingsWithoutSense) {
+TEST(Bsp, AcceptsInvalidSettings) {
     const float nan = std::nanf("");
     for (const int number : {-7, 0, 1, 1 << 30}) {
         Bsp tree(Bsp::Settings{.weights = {nan, -1}, .candidates = number, .leaf_boxes = number});

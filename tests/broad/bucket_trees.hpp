@@ -1,18 +1,18 @@
 #pragma once
-/// Checks of the two trees whose boxes are in every leaf that they overlap.
+/// Tests of quadtree and octree, whose boxes are in every leaf that they overlap.
 #include "tests/broad/cell_trees.hpp"
 
 namespace fase::broad::cell_trees {
 
-/// All leaves, their boxes, and no others, judged by the cells that are shown.
-template <class S> void puts_a_box_in_every_leaf_that_it_overlaps() {
+/// Each leaf holds exactly the boxes that overlap its cell.
+template <class S> void stores_a_box_in_every_leaf_that_it_overlaps() {
     typename S::Settings settings;
     settings.capacity = 6;
     S tree(settings);
     const std::vector<Move> boxes = random_cubes(600, 14, 11);
     tree.build(boxes);
     std::size_t leaves = 0;
-    bool is_anywhere_twice = false;
+    bool is_any_in_two_leaves = false;
     tree.for_each_leaf([&](const Leaf& leaf) {
         ++leaves;
         std::vector<Proxy> held(leaf.proxies.begin(), leaf.proxies.end());
@@ -22,13 +22,13 @@ template <class S> void puts_a_box_in_every_leaf_that_it_overlaps() {
             if (overlaps(m.box, leaf.cell)) expected.push_back(m.proxy);
         EXPECT_EQ(held, expected) << "leaf " << leaves;
     });
-    for (const auto& [p, count] : leaves_of_each(tree)) is_anywhere_twice = is_anywhere_twice || count > 1;
-    EXPECT_TRUE(is_anywhere_twice);
+    for (const auto& [p, count] : leaves_of_each(tree)) is_any_in_two_leaves = is_any_in_two_leaves || count > 1;
+    EXPECT_TRUE(is_any_in_two_leaves);
     EXPECT_GT(leaves, 30u);
 }
 
-/// Boxes in one place, away from all cuts and across one.
-template <class S> void ends_where_boxes_coincide() {
+/// Coincident boxes, within a cell and straddling a split.
+template <class S> void stops_splitting_where_boxes_coincide() {
     for (const float at : {3.3f, 7.5f}) {
         std::vector<Move> boxes = random_cubes(200, 15, 12);
         for (Proxy p = 0; p < 200; p += 100)
@@ -53,7 +53,8 @@ template <class S> void ends_where_boxes_coincide() {
     EXPECT_LE(stats.nodes, 18u);
 }
 
-/// Many boxes span much of the world: they must not be in a million leaves, and where they are most, none is split.
+/// Many boxes span a large part of the world: they must not be in a million leaves; where half of the boxes are huge,
+/// few leaves are split.
 template <class S> void keeps_few_entries_for_huge_boxes() {
     for (const std::uint32_t every : {2u, 8u}) {
         typename S::Settings settings;
@@ -71,19 +72,19 @@ template <class S> void keeps_few_entries_for_huge_boxes() {
     }
 }
 
-/// One box as large as the world does not keep a small crowd in one leaf.
-template <class S> void splits_a_crowd_below_a_huge_box() {
+/// One box as large as the world does not prevent the split of a small cluster.
+template <class S> void splits_a_cluster_below_a_huge_box() {
     std::vector<Move> boxes = random_cubes(1000, 1, 14, 0.001f);
     boxes.push_back({1000, cube({-500, -500, -500}, 1000)});
     S tree;
     tree.build(boxes);
     EXPECT_EQ(tree.broken_invariant(), "");
     EXPECT_LT(stats_of(tree).largest_leaf, 200u);
-    EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+    EXPECT_EQ(pairs_of(tree), pairs_of(reference_of(boxes)));
 }
 
-/// Leaves hold something, and no more boxes than the capacity where boxes are small and apart.
-template <class S> void makes_children_only_where_something_enters() {
+/// Leaves are not empty, and hold at most `capacity` boxes where boxes are small and disjoint.
+template <class S> void creates_no_empty_children() {
     typename S::Settings settings;
     settings.capacity = 8;
     S tree(settings);
@@ -96,7 +97,7 @@ template <class S> void makes_children_only_where_something_enters() {
     std::map<int, std::size_t> cells_at;
     for (const DrawnCell& cell : cells) ++cells_at[cell.depth];
     EXPECT_EQ(cells_at[0], 1u);
-    EXPECT_EQ(cells_at[1], 2u) << "two corners are taken, the others are empty";
+    EXPECT_EQ(cells_at[1], 2u) << "two corners have boxes, the others are empty";
     EXPECT_EQ(cells_at[5], 2u);
     tree.for_each_leaf([](const Leaf& leaf) { EXPECT_FALSE(leaf.proxies.empty()); });
     EXPECT_LE(stats_of(tree).largest_leaf, 8u);

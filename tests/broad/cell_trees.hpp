@@ -1,6 +1,5 @@
 #pragma once
-/// What the tests of quadtree, octree and loose octree have in common: box sets, answers in order, and checks against
-/// brute force.
+/// Shared by the tests of quadtree, octree and loose octree: box sets, sorted results, and checks against brute force.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -24,7 +23,7 @@ inline std::vector<Move> random_cubes(std::size_t count, float world, std::uint6
     return boxes;
 }
 
-/// As found, doubles and all, in order.
+/// All found pairs, sorted; duplicates are kept.
 template <class S> std::vector<Pair> pairs_of(const S& s) {
     std::vector<Pair> pairs;
     s.find_pairs(pairs);
@@ -47,32 +46,31 @@ template <class S> std::vector<Proxy> overlapping(const S& s, const Aabb& box) {
     return found;
 }
 
-inline BruteForce judge_of(const std::vector<Move>& boxes) {
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
-    return judge;
+inline BruteForce reference_of(const std::vector<Move>& boxes) {
+    BruteForce reference;
+    for (const Move& m : boxes) reference.insert(m.proxy, m.box);
+    return reference;
 }
 
-/// Pairs, awake pairs when every third rests, and a query about each box, against brute force.
+/// Checks pairs, awake pairs with two thirds of the boxes asleep, and queries against brute force.
 template <class S> void expect_like_brute_force(S& tree, const std::vector<Move>& boxes) {
     tree.build(boxes);
-    BruteForce judge = judge_of(boxes);
+    BruteForce reference = reference_of(boxes);
     ASSERT_EQ(tree.broken_invariant(), "");
-    ASSERT_EQ(pairs_of(tree), pairs_of(judge));
+    ASSERT_EQ(pairs_of(tree), pairs_of(reference));
     for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / 50)
-        ASSERT_EQ(overlapping(tree, boxes[i].box), overlapping(judge, boxes[i].box));
+        ASSERT_EQ(overlapping(tree, boxes[i].box), overlapping(reference, boxes[i].box));
     for (const Move& m : boxes) {
         if (m.proxy % 3 == 0) continue;
         tree.set_awake(m.proxy, false);
-        judge.set_awake(m.proxy, false);
+        reference.set_awake(m.proxy, false);
     }
     tree.commit();
     ASSERT_EQ(tree.broken_invariant(), "");
-    ASSERT_EQ(awake_pairs_of(tree), awake_pairs_of(judge));
+    ASSERT_EQ(awake_pairs_of(tree), awake_pairs_of(reference));
 }
 
-/// Boxes on small whole numbers, so that borders and corners coincide, some flat, some huge; rapidcheck makes them
-/// smaller.
+/// Boxes on small integers, so that borders and corners coincide; some flat, some huge. Rapidcheck shrinks them.
 inline std::vector<Move> arbitrary_boxes() {
     const auto sizes = *rc::gen::container<std::vector<std::array<int, 6>>>(
         rc::gen::container<std::array<int, 6>>(rc::gen::inRange(0, 17)));
@@ -95,10 +93,10 @@ template <class S> void like_brute_force_for_arbitrary_boxes() {
     const std::vector<Move> boxes = arbitrary_boxes();
     tree.build(boxes);
     RC_ASSERT(tree.broken_invariant() == "");
-    RC_ASSERT(pairs_of(tree) == pairs_of(judge_of(boxes)));
+    RC_ASSERT(pairs_of(tree) == pairs_of(reference_of(boxes)));
 }
 
-/// Proxies and how many leaves hold them.
+/// The number of leaves of each proxy.
 template <class S> std::map<Proxy, std::size_t> leaves_of_each(const S& tree) {
     std::map<Proxy, std::size_t> leaves;
     tree.for_each_leaf([&](const Leaf& leaf) {
@@ -107,8 +105,8 @@ template <class S> std::map<Proxy, std::size_t> leaves_of_each(const S& tree) {
     return leaves;
 }
 
-/// Boxes that come, move, go and rest must not let the pools grow for ever.
-template <class S> void needs_no_more_memory_once_warm() {
+/// Repeated inserts, moves, erases and sleep must not grow the arrays without bound.
+template <class S> void does_not_allocate_once_warm() {
     Random random(6);
     S tree;
     tree.build(random_cubes(2000, 25, 6));
@@ -125,12 +123,12 @@ template <class S> void needs_no_more_memory_once_warm() {
     for (int i = 0; i < 20; ++i) one_round();
     const std::size_t warm = tree.bytes();
     for (int i = 0; i < 20; ++i) one_round();
-    EXPECT_LE(tree.bytes(), warm + warm / 20) << "no two rounds have just as many cells";
+    EXPECT_LE(tree.bytes(), warm + warm / 20) << "more than the variation of the cell count between rounds";
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-/// The same boxes anew: then the pools need not a byte more.
-template <class S> void reuses_all_pools() {
+/// Building the same boxes again does not grow the arrays.
+template <class S> void reuses_all_arrays() {
     const std::vector<Move> boxes = random_cubes(2000, 25, 7);
     S tree;
     tree.build(boxes);
@@ -145,7 +143,7 @@ template <class S> void reuses_all_pools() {
     EXPECT_EQ(tree.bytes(), warm);
 }
 
-/// Declared bounds of which most boxes lie outside, some of them very far.
+/// Most boxes are outside the declared bounds, some of them very far.
 template <class S> void finds_boxes_outside_the_declared_bounds() {
     typename S::Settings settings;
     settings.capacity = 4;
@@ -164,13 +162,13 @@ template <class S> void finds_boxes_outside_the_declared_bounds() {
     }
 }
 
-/// Every box of a branch that a camera sees whole comes in one call.
-template <class S> void hands_over_whole_branches() {
+/// All boxes of a branch completely inside the region are passed in one call.
+template <class S> void passes_complete_branches() {
     S tree;
     tree.build(random_cubes(3000, 30, 9));
     std::size_t calls = 0, seen = 0;
-    cull(tree, BoxRegion{{{-1, -1, -1}, {40, 40, 40}}}, [&](std::span<const Proxy> proxies, bool whole) {
-        EXPECT_TRUE(whole);
+    cull(tree, BoxRegion{{{-1, -1, -1}, {40, 40, 40}}}, [&](std::span<const Proxy> proxies, bool inside) {
+        EXPECT_TRUE(inside);
         ++calls;
         seen += proxies.size();
     });
@@ -178,8 +176,8 @@ template <class S> void hands_over_whole_branches() {
     EXPECT_EQ(seen, 3000u);
 }
 
-/// Of the boxes along a row only the near ones are looked at.
-template <class S> void opens_near_branches_first() {
+/// Visits only the near boxes of a row.
+template <class S> void visits_near_branches_first() {
     std::vector<Move> row;
     for (Proxy p = 0; p < 4000; ++p)
         row.push_back({p, cube({static_cast<float>(2 * p), 0, static_cast<float>(p % 7)})});
@@ -187,16 +185,17 @@ template <class S> void opens_near_branches_first() {
     tree.build(row);
     std::size_t visited = 0;
     Proxy nearest = 0;
-    tree.nearest_first(PointMeasure({5000.5, 0, 3}, Aabb::infinity), beyond, [&](Proxy p, const Aabb&, float at) {
-        ++visited;
-        nearest = p;
-        return at;
-    });
+    tree.nearest_first(PointMeasure({5000.5, 0, 3}, Aabb::infinity), infinite_distance,
+                       [&](Proxy p, const Aabb&, float at) {
+                           ++visited;
+                           nearest = p;
+                           return at;
+                       });
     EXPECT_NEAR(nearest, 2500, 3);
     EXPECT_LT(visited, 200u);
 }
 
-template <class S> void finds_the_same_in_parallel() {
+template <class S> void finds_the_same_pairs_in_parallel() {
     S tree;
     tree.build(random_cubes(6000, 35, 10));
     std::vector<Pair> alone, shared;

@@ -1,5 +1,5 @@
 #pragma once
-/// What tests of pairs share: places drawn at random, pairs in order, and the judge.
+/// Shared by the tests of pairs: random points and boxes, sorted pairs, and reference results.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace fase::broad {
 
-/// Each coordinate between two numbers.
+/// A random point with each coordinate between two numbers.
 inline Vec3 place(Random& random, float from, float to) {
     const float x = random.between(from, to), y = random.between(from, to), z = random.between(from, to);
     return {x, y, z};
@@ -19,7 +19,7 @@ inline Vec3 place(Random& random, float from, float to) {
 
 inline Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
 
-/// Boxes of sides 0.5 to 1.5 in a cube, about two neighbours each.
+/// Boxes with sides of 0.5 to 1.5 in a cube, with about two neighbours each.
 inline std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}) {
     Random random(seed);
     const float world = std::cbrt(static_cast<float>(count) * 2);
@@ -31,7 +31,7 @@ inline std::vector<Move> gas(std::size_t count, std::uint64_t seed, Vec3 at = {}
     return boxes;
 }
 
-/// The structure with these boxes in it.
+/// Inserts boxes into a structure and commits.
 template <class S> S filled(S s, const std::vector<Move>& boxes) {
     for (const Move& m : boxes) s.insert(m.proxy, m.box);
     s.commit();
@@ -45,11 +45,11 @@ template <class S> std::vector<Pair> sorted_pairs(const S& structure) {
     return pairs;
 }
 
-/// The pairs of the boxes, by trying all.
-inline std::vector<Pair> judged(std::span<const Move> boxes) {
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
-    return sorted_pairs(judge);
+/// The sorted pairs of the boxes, by brute force.
+inline std::vector<Pair> reference_pairs(std::span<const Move> boxes) {
+    BruteForce reference;
+    for (const Move& m : boxes) reference.insert(m.proxy, m.box);
+    return sorted_pairs(reference);
 }
 
 }  // namespace fase::broad

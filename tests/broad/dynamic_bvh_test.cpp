@@ -33,8 +33,8 @@ std::vector<Pair> pairs_of(const DynamicBvh& tree) {
     return pairs;
 }
 
-/// One at a time, so that each goes through the insertion by area.
-DynamicBvh grown_one_by_one(const std::vector<Move>& boxes) {
+/// Commits each box separately, so that each is inserted by surface area.
+DynamicBvh inserted_one_by_one(const std::vector<Move>& boxes) {
     DynamicBvh tree;
     for (const Move& m : boxes) {
         tree.insert(m.proxy, m.box);
@@ -43,7 +43,7 @@ DynamicBvh grown_one_by_one(const std::vector<Move>& boxes) {
     return tree;
 }
 
-TEST(DynamicBvh, ChangesNoNodeWhileABoxStaysInItsFatBox) {
+TEST(DynamicBvh, ChangesNoNodeWhileABoxStaysInItsFatAabb) {
     DynamicBvh tree;
     const std::vector<Move> boxes = random_cubes(100, 10, 1);
     tree.build(boxes);
@@ -59,7 +59,7 @@ TEST(DynamicBvh, ChangesNoNodeWhileABoxStaysInItsFatBox) {
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(DynamicBvh, TellsExactBoxesFromFatOnes) {
+TEST(DynamicBvh, ReportsExactBoxesNotFatOnes) {
     DynamicBvh tree;
     tree.build(std::vector<Move>{{0, cube({0, 0, 0})}, {1, cube({5, 0, 0})}});
     tree.move(1, cube({1.5f, 0, 0}));
@@ -73,14 +73,14 @@ TEST(DynamicBvh, TellsExactBoxesFromFatOnes) {
     EXPECT_EQ(pairs_of(tree), (std::vector<Pair>{{0, 1}}));
 }
 
-TEST(DynamicBvh, IsNearlyAsGoodGrownOneByOneAsBuiltAtOnce) {
+TEST(DynamicBvh, HasSimilarCostWithInsertionsAsWithABulkBuild) {
     const std::vector<Move> boxes = random_cubes(4000, 40, 2);
     DynamicBvh built;
     built.build(boxes);
-    EXPECT_LT(grown_one_by_one(boxes).cost(), 1.25 * built.cost());
+    EXPECT_LT(inserted_one_by_one(boxes).cost(), 1.25 * built.cost());
 }
 
-TEST(DynamicBvh, StaysGoodWhileEverythingMoves) {
+TEST(DynamicBvh, KeepsALowCostWhileEverythingMoves) {
     Random random(3);
     std::vector<Move> boxes = random_cubes(3000, 30, 3);
     std::vector<Vec3> velocity;
@@ -100,27 +100,27 @@ TEST(DynamicBvh, StaysGoodWhileEverythingMoves) {
     EXPECT_LT(tree.cost(), 1.6 * fresh.cost());
 }
 
-TEST(DynamicBvh, MakesNoChainOfBoxesInOnePlace) {
+TEST(DynamicBvh, BuildsNoChainOfCoincidentBoxes) {
     std::vector<Move> same;
     for (Proxy p = 0; p < 5000; ++p) same.push_back({p, cube({1, 2, 3})});
-    EXPECT_LT(depth_of(grown_one_by_one(same)), 64);
+    EXPECT_LT(depth_of(inserted_one_by_one(same)), 64);
     DynamicBvh built;
     built.build(same);
     EXPECT_LE(depth_of(built), 13);
 }
 
-TEST(DynamicBvh, MakesNoChainOfPointsOnALine) {
+TEST(DynamicBvh, BuildsNoChainOfPointsOnALine) {
     std::vector<Move> points;
     for (Proxy p = 0; p < 5000; ++p) points.push_back({p, cube({static_cast<float>(p), 0, 0}, 0)});
-    EXPECT_LT(depth_of(grown_one_by_one(points)), 64);
+    EXPECT_LT(depth_of(inserted_one_by_one(points)), 64);
     DynamicBvh built;
     built.build(points);
     EXPECT_LE(depth_of(built), 20);
 }
 
-TEST(DynamicBvh, IsNotSpoiltByInfiniteBoxes) {
+TEST(DynamicBvh, IsNotDegradedByInfiniteBoxes) {
     const std::vector<Move> boxes = random_cubes(1000, 20, 4);
-    DynamicBvh plain = grown_one_by_one(boxes), with_ground;
+    DynamicBvh plain = inserted_one_by_one(boxes), with_ground;
     const Aabb ground{{-Aabb::infinity, -Aabb::infinity, -Aabb::infinity}, {Aabb::infinity, 0, Aabb::infinity}};
     with_ground.insert(5000, ground);
     for (const Move& m : boxes) {
@@ -149,7 +149,7 @@ TEST(DynamicBvh, LetsABoxBecomeInfiniteAndFiniteAgain) {
     EXPECT_EQ(pairs_of(tree).size(), pairs_at_first);
 }
 
-TEST(DynamicBvh, TakesABoxBackThatWasNoneBetweenTwoCommits) {
+TEST(DynamicBvh, KeepsABoxThatWasNanBetweenTwoCommits) {
     DynamicBvh tree;
     for (Proxy p = 0; p < 8; ++p) tree.insert(p, cube({static_cast<float>(p), 0, 0}));
     tree.commit();
@@ -163,14 +163,14 @@ TEST(DynamicBvh, TakesABoxBackThatWasNoneBetweenTwoCommits) {
     EXPECT_TRUE(std::find(pairs.begin(), pairs.end(), Pair{3, 4}) != pairs.end());
 }
 
-TEST(DynamicBvh, NeedsNoMoreMemoryOnceWarm) {
+TEST(DynamicBvh, DoesNotAllocateOnceWarm) {
     Random random(6);
     DynamicBvh tree;
     tree.build(random_cubes(500, 15, 6));
     const auto one_round = [&] {
         for (Proxy p = 0; p < 500; ++p) tree.move(p, cube(place(random, 0, 15)));  // many: refitted
         tree.commit();
-        for (Proxy p = 0; p < 500; p += 50) tree.move(p, cube(place(random, 0, 15)));  // few: put in anew
+        for (Proxy p = 0; p < 500; p += 50) tree.move(p, cube(place(random, 0, 15)));  // few: reinserted
         tree.commit();
         for (Proxy p = 0; p < 500; p += 3) tree.erase(p);
         tree.commit();
@@ -187,12 +187,12 @@ TEST(DynamicBvh, NeedsNoMoreMemoryOnceWarm) {
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(DynamicBvh, ReportsTheSameForAnySettings) {
+TEST(DynamicBvh, ReportsTheSamePairsForAnySettings) {
     const std::vector<Move> boxes = random_cubes(400, 12, 7);
     std::vector<Pair> expected;
     for (const DynamicBvh::Settings& settings :
-         {DynamicBvh::Settings{}, DynamicBvh::Settings{.margin = 0, .motion = 0, .crowd_margin = 0},
-          DynamicBvh::Settings{.margin = 2, .motion = 50, .crowd = 2}, DynamicBvh::Settings{.worst_growth = 0}}) {
+         {DynamicBvh::Settings{}, DynamicBvh::Settings{.margin = 0, .motion = 0, .refit_margin = 0},
+          DynamicBvh::Settings{.margin = 2, .motion = 50, .refit_share = 2}, DynamicBvh::Settings{.max_growth = 0}}) {
         Random random(8);
         DynamicBvh tree(settings);
         tree.build(boxes);
@@ -215,7 +215,8 @@ TEST(DynamicBvh, DoesNotPairAProxyWithItselfInAnotherTree) {
     std::vector<Pair> pairs;
     one.find_pairs_with(other, pairs);
     std::sort(pairs.begin(), pairs.end());
-    EXPECT_EQ(pairs, (std::vector<Pair>{{0, 1}, {0, 1}, {1, 2}, {1, 3}, {2, 3}})) << "0 and 1 meet both ways round";
+    EXPECT_EQ(pairs, (std::vector<Pair>{{0, 1}, {0, 1}, {1, 2}, {1, 3}, {2, 3}}))
+        << "0 and 1 are in both trees, so their pair is found twice";
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 namespace fase::broad {
 namespace {
 
-/// A structure that offers no more than the concept asks for.
+/// A structure without refinements.
 class Plain {
 public:
-    static constexpr StructureInfo info{"plain", "hides what brute force can do beyond the concept", "test"};
+    static constexpr StructureInfo info{"plain", "hides the refinements of brute force", "test"};
     void insert(Proxy p, const Aabb& box) { boxes_.insert(p, box); }
     void move(Proxy p, const Aabb& box) { boxes_.move(p, box); }
     void erase(Proxy p) { boxes_.erase(p); }
@@ -34,8 +34,8 @@ private:
     BruteForce boxes_;
 };
 static_assert(Structure<Plain> && !FindsOwnPairs<Plain> && !Drawable<Plain>);
-static_assert(!HoldsAwake<Plain> && !BestFirst<Plain> && !TakesWhole<Plain>);
-static_assert(FindsOwnPairs<BruteForce> && HoldsAwake<BruteForce>);
+static_assert(!FindsAwakePairs<Plain> && !BestFirst<Plain> && !CullsBranches<Plain>);
+static_assert(FindsOwnPairs<BruteForce> && FindsAwakePairs<BruteForce>);
 
 template <class S> S random_set(std::size_t count, Proxy first) {
     Random random(5);
@@ -55,10 +55,10 @@ template <class Find> std::vector<Pair> sorted(Find&& find) {
     return pairs;
 }
 
-TEST(FindPairs, AsksBoxByBoxWhenAStructureHasNoBetterWay) {
+TEST(FindPairs, QueriesBoxByBoxWithoutRefinements) {
     const auto plain = random_set<Plain>(1200, 10);
-    const auto judge = random_set<BruteForce>(1200, 10);
-    const std::vector<Pair> expected = sorted([&](auto& out) { find_pairs(judge, out); });
+    const auto reference = random_set<BruteForce>(1200, 10);
+    const std::vector<Pair> expected = sorted([&](auto& out) { find_pairs(reference, out); });
     EXPECT_GT(expected.size(), 1000u);
     EXPECT_EQ(sorted([&](auto& out) { find_pairs(plain, out); }), expected);
     for (const int threads : {1, 2, 3}) {
@@ -67,13 +67,13 @@ TEST(FindPairs, AsksBoxByBoxWhenAStructureHasNoBetterWay) {
     }
 }
 
-TEST(FindPairs, AppendsToWhatIsThere) {
+TEST(FindPairs, AppendsToExistingPairs) {
     std::vector<Pair> out{{90, 91}};
     find_pairs(random_set<BruteForce>(50, 0), out);
     EXPECT_EQ(out[0], (Pair{90, 91}));
 }
 
-TEST(FindPairs, BetweenAnEmptySetAndAnotherAreNone) {
+TEST(FindPairs, FindsNoneWithAnEmptySet) {
     std::vector<Pair> out;
     find_pairs_between(Plain{}, random_set<BruteForce>(50, 0), out);
     find_pairs_between(random_set<Plain>(50, 0), BruteForce{}, out);

@@ -12,22 +12,23 @@
 namespace fase::broad {
 namespace {
 
-/// The structure and the judge, side by side.
+/// The structure and the reference, with the same boxes.
 struct Both {
     IncrementalSweep tested;
-    BruteForce judge;
+    BruteForce reference;
     std::vector<Aabb> boxes;
 
-    explicit Both(double patience = 1000) : tested(IncrementalSweep::Settings{.patience = patience}) {}
+    explicit Both(double max_swaps_per_box = 1000)
+        : tested(IncrementalSweep::Settings{.max_swaps_per_box = max_swaps_per_box}) {}
 
     void insert(const Aabb& box) {
         tested.insert(static_cast<Proxy>(boxes.size()), box);
-        judge.insert(static_cast<Proxy>(boxes.size()), box);
+        reference.insert(static_cast<Proxy>(boxes.size()), box);
         boxes.push_back(box);
     }
     void move(Proxy p, const Aabb& box) {
         tested.move(p, box);
-        judge.move(p, box);
+        reference.move(p, box);
         boxes[p] = box;
     }
     void expect_same() {
@@ -35,7 +36,7 @@ struct Both {
         ASSERT_EQ(tested.broken_invariant(), "");
         std::vector<Pair> pairs, expected;
         tested.find_pairs(pairs);
-        judge.find_pairs(expected);
+        reference.find_pairs(expected);
         std::sort(pairs.begin(), pairs.end());
         std::sort(expected.begin(), expected.end());
         ASSERT_EQ(pairs, expected);
@@ -44,9 +45,9 @@ struct Both {
 
 Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
 
-Both crowd(std::size_t count, float world, std::uint64_t seed, double patience = 1000) {
+Both crowd(std::size_t count, float world, std::uint64_t seed, double max_swaps_per_box = 1000) {
     Random random(seed);
-    Both both(patience);
+    Both both(max_swaps_per_box);
     for (std::size_t i = 0; i < count; ++i) {
         const float x = random.between(0, world), y = random.between(0, world), z = random.between(0, world);
         both.insert(cube({x, y, z}));
@@ -55,7 +56,7 @@ Both crowd(std::size_t count, float world, std::uint64_t seed, double patience =
     return both;
 }
 
-TEST(IncrementalSweep, SweepsOnceAndThenFollowsSmallMoves) {
+TEST(IncrementalSweep, SweepsOnceThenUpdatesSmallMoves) {
     Both both = crowd(400, 8, 1);
     ASSERT_EQ(both.tested.sweeps(), 1u);
     Random random(2);
@@ -63,7 +64,7 @@ TEST(IncrementalSweep, SweepsOnceAndThenFollowsSmallMoves) {
         for (Proxy p = 0; p < both.boxes.size(); ++p) {
             if (random.below(4) != 0) continue;
             Aabb box = both.boxes[p];
-            for (int axis = 0; axis < 3; ++axis) {  // each end for itself: boxes grow and shrink too
+            for (int axis = 0; axis < 3; ++axis) {  // each endpoint separately: boxes grow and shrink too
                 const float lo = box.lo[axis] + random.between(-0.2f, 0.2f),
                             hi = box.hi[axis] + random.between(-0.2f, 0.2f);
                 box.lo[axis] = std::min(lo, hi);
@@ -76,8 +77,8 @@ TEST(IncrementalSweep, SweepsOnceAndThenFollowsSmallMoves) {
     EXPECT_EQ(both.tested.sweeps(), 1u);
 }
 
-/// All coordinates are whole numbers: begins and ends of many boxes are in one place at each moment.
-TEST(IncrementalSweep, TellsTouchingFromPartedWhereAllEndsAreTies) {
+/// All coordinates are integers: many boxes have equal begins and ends at each moment.
+TEST(IncrementalSweep, DistinguishesTouchingFromSeparatedWhenEndpointsAreEqual) {
     Random random(3);
     Both both;
     const auto draw = [&] {
@@ -98,45 +99,45 @@ TEST(IncrementalSweep, TellsTouchingFromPartedWhereAllEndsAreTies) {
     EXPECT_EQ(both.tested.sweeps(), 1u);
 }
 
-TEST(IncrementalSweep, TakesInAndLetsGoAFewWithoutASweep) {
+TEST(IncrementalSweep, InsertsAndErasesAFewBoxesWithoutASweep) {
     Both both = crowd(500, 9, 4);
     Random random(5);
-    std::set<Proxy> gone;
+    std::set<Proxy> erased;
     for (int step = 0; step < 40; ++step) {
         for (int i = 0; i < 5; ++i) {
             const float x = random.between(0, 9), y = random.between(0, 9), z = random.between(0, 9);
             both.insert(cube({x, y, z}));
             const auto p = static_cast<Proxy>(random.below(both.boxes.size()));
-            if (!gone.insert(p).second) continue;
+            if (!erased.insert(p).second) continue;
             both.tested.erase(p);
-            both.judge.erase(p);
+            both.reference.erase(p);
         }
         ASSERT_NO_FATAL_FAILURE(both.expect_same()) << step;
     }
     EXPECT_EQ(both.tested.sweeps(), 1u);
 }
 
-TEST(IncrementalSweep, SweepsAnewWhenMuchChangesAndFollowsAgainWhenItIsCalm) {
+TEST(IncrementalSweep, SweepsWhenMuchChangesAndUpdatesAgainWhenLittleChanges) {
     Both both = crowd(3000, 16, 6, 20);
     Random random(7);
     const std::size_t before = both.tested.sweeps();
-    const auto leap = [&](std::size_t count) {
+    const auto jump = [&](std::size_t count) {
         for (Proxy p = 0; p < count; ++p) {
             const float x = random.between(0, 16), y = random.between(0, 16), z = random.between(0, 16);
             both.move(p, cube({x, y, z}));
         }
         both.expect_same();
     };
-    for (int step = 0; step < 5; ++step) ASSERT_NO_FATAL_FAILURE(leap(3000));
+    for (int step = 0; step < 5; ++step) ASSERT_NO_FATAL_FAILURE(jump(3000));
     EXPECT_EQ(both.tested.sweeps(), before + 5);
-    for (int step = 0; step < 5; ++step) ASSERT_NO_FATAL_FAILURE(leap(1));
-    EXPECT_EQ(both.tested.sweeps(), before + 5) << "does not follow a single box";
+    for (int step = 0; step < 5; ++step) ASSERT_NO_FATAL_FAILURE(jump(1));
+    EXPECT_EQ(both.tested.sweeps(), before + 5) << "sweeps for a single moved box";
     for (int i = 0; i < 500; ++i) both.insert(cube({1, 2, 3}));
     ASSERT_NO_FATAL_FAILURE(both.expect_same());
     EXPECT_EQ(both.tested.sweeps(), before + 6);
 }
 
-TEST(IncrementalSweep, ForgetsWhatWasDoneAndUndoneBetweenCommits) {
+TEST(IncrementalSweep, IgnoresChangesUndoneBeforeCommit) {
     Both both = crowd(100, 5, 8);
     const Aabb old = both.boxes[4];
     both.move(4, cube({100, 100, 100}));
@@ -152,7 +153,7 @@ TEST(IncrementalSweep, ForgetsWhatWasDoneAndUndoneBetweenCommits) {
     EXPECT_EQ(both.tested.sweeps(), 1u);
 }
 
-TEST(IncrementalSweep, HoldsThousandsInOnePlaceAndLetsOneOut) {
+TEST(IncrementalSweep, SeparatesOneBoxFromThousandsOfCoincidentOnes) {
     Both both;
     for (int i = 0; i < 1500; ++i) both.insert(cube({1, 1, 1}));
     ASSERT_NO_FATAL_FAILURE(both.expect_same());
@@ -178,9 +179,9 @@ TEST(PairTable, AddsAndRemovesAsASetDoes) {
             table.remove(pair);
         }
         if (step % 4000 == 3999) {
-            const auto unwanted = [&](Pair p) { return p.a == 7 || p.b == 50; };
-            table.remove_if(unwanted);
-            std::erase_if(expected, unwanted);
+            const auto removed = [&](Pair p) { return p.a == 7 || p.b == 50; };
+            table.remove_if(removed);
+            std::erase_if(expected, removed);
         }
         if (step % 100 != 0) continue;
         ASSERT_EQ(table.broken_invariant(), "");

@@ -9,7 +9,7 @@ KdTree by_rule(KdTree::Rule rule) { return KdTree(KdTree::Settings{.rule = rule}
 
 class BothRules : public ::testing::TestWithParam<KdTree::Rule> {};
 
-TEST_P(BothRules, AreSoundOnHardSets) {
+TEST_P(BothRules, AreCorrectOnHardSets) {
     for (const auto& [name, boxes] : hard_sets()) {
         SCOPED_TRACE(name);
         KdTree tree = by_rule(GetParam());
@@ -17,35 +17,35 @@ TEST_P(BothRules, AreSoundOnHardSets) {
     }
 }
 
-TEST_P(BothRules, AreSoundOnSetsOfOthers) {
+TEST_P(BothRules, AreCorrectOnThirdPartySets) {
     for (const char* file : {"bounds01.txt", "bounds02.txt", "bounds03.txt"}) {
-        const std::vector<Move> boxes = boxes_of_others(file);
+        const std::vector<Move> boxes = boxes_from_file(file);
         if (boxes.empty()) GTEST_SKIP() << "skipped: " << file << " is missing";
         KdTree tree = by_rule(GetParam());
         ASSERT_NO_FATAL_FAILURE(expect_sound(tree, boxes));
     }
 }
 
-TEST_P(BothRules, LookAtFewBoxesForASmallQuestion) {
+TEST_P(BothRules, TestFewBoxesInASmallQuery) {
     const std::vector<Move> boxes = random_cubes(20000, 100, 3);
     KdTree tree = by_rule(GetParam());
     tree.build(boxes);
-    std::size_t asked = 0, met = 0;
+    std::size_t tests = 0, met = 0;
     for (std::size_t i = 0; i < boxes.size(); i += 100)
-        tree.traverse(CountingRegion{boxes[i].box, asked}, [&](Proxy, const Aabb&) { return ++met > 0; });
+        tree.traverse(CountingRegion{boxes[i].box, tests}, [&](Proxy, const Aabb&) { return ++met > 0; });
     EXPECT_GE(met, 200u);
-    EXPECT_LT(asked, 200u * 200);
+    EXPECT_LT(tests, 200u * 200);
 }
 
-TEST_P(BothRules, SeparateNestedBoxesThatNoMiddleTellsApart) {
+TEST_P(BothRules, SeparateNestedBoxesWithEqualCentres) {
     const std::vector<Move> boxes = hard_sets().at("nested, even sizes");
     KdTree tree = by_rule(GetParam());
     tree.build(boxes);
-    std::size_t asked = 0, met = 0;
-    const Vec3 outside{1100, 1100, 1100};  // within the last hundred boxes only
-    tree.traverse(CountingRegion{{outside, outside}, asked}, [&](Proxy, const Aabb&) { return ++met > 0; });
+    std::size_t tests = 0, met = 0;
+    const Vec3 outside{1100, 1100, 1100};  // inside the last hundred boxes only
+    tree.traverse(CountingRegion{{outside, outside}, tests}, [&](Proxy, const Aabb&) { return ++met > 0; });
     EXPECT_EQ(met, 101u);
-    EXPECT_LT(asked, 1000u);
+    EXPECT_LT(tests, 1000u);
 }
 
 INSTANTIATE_TEST_SUITE_P(KdTree, BothRules, ::testing::Values(KdTree::Rule::Surface, KdTree::Rule::Median),
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(KdTree, BothRules, ::testing::Values(KdTree::Rule::Surf
                              return std::string(rule.param == KdTree::Rule::Surface ? "Surface" : "Median");
                          });
 
-TEST(KdTree, CutsWhereTheEmptySpaceIs) {
+TEST(KdTree, SplitsAtEmptySpace) {
     std::vector<Aabb> boxes;
     Random random(4);
     for (int i = 0; i < 50; ++i) boxes.push_back(cube(place(random, 0, 5)));
@@ -66,11 +66,11 @@ TEST(KdTree, CutsWhereTheEmptySpaceIs) {
     EXPECT_EQ(cells[0].depth, 0);
     std::size_t halves = 0;
     for (const DrawnCell& cell : cells) halves += cell.depth == 1 && (cell.box.hi.x <= 6 || cell.box.lo.x >= 100);
-    EXPECT_EQ(halves, 2u);  // and nobody astride
+    EXPECT_EQ(halves, 2u);  // and no straddling boxes
 }
 
-TEST(KdTree, KeepsWhatAPlaneGoesThroughInAChildOfItsOwn) {
-    // Two crowds, and a beam from one to the other.
+TEST(KdTree, StoresStraddlingBoxesInASeparateChild) {
+    // Two clusters, and a beam between them.
     std::vector<Aabb> boxes{{{0, 2, 2}, {105, 3, 3}}};
     Random random(5);
     for (int i = 0; i < 40; ++i) boxes.push_back(cube(place(random, 0, 5) + Vec3{i % 2 == 0 ? 0.0f : 100.0f, 0, 0}));
@@ -82,38 +82,38 @@ TEST(KdTree, KeepsWhatAPlaneGoesThroughInAChildOfItsOwn) {
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(KdTree, TakesLargerLeavesWhenToldTo) {
+TEST(KdTree, BuildsLargerLeavesWithTheirSettings) {
     const std::vector<Move> boxes = random_cubes(2000, 40, 6);
     KdTree fine(KdTree::Settings{.leaf_boxes = 1}), coarse(KdTree::Settings{.leaf_boxes = 64}),
-        dear(KdTree::Settings{.leaf_boxes = 1, .node_cost = 50});
-    for (KdTree* tree : {&fine, &coarse, &dear}) ASSERT_NO_FATAL_FAILURE(expect_sound(*tree, boxes));
+        costly(KdTree::Settings{.leaf_boxes = 1, .node_cost = 50});
+    for (KdTree* tree : {&fine, &coarse, &costly}) ASSERT_NO_FATAL_FAILURE(expect_sound(*tree, boxes));
     EXPECT_LT(coarse.nodes() * 8, fine.nodes());
-    EXPECT_LT(dear.nodes() * 8, fine.nodes());
+    EXPECT_LT(costly.nodes() * 8, fine.nodes());
     EXPECT_LE(stats_of(coarse).largest_leaf, 64u);
 }
 
-TEST(KdTree, SurvivesSettingsWithoutSense) {
+TEST(KdTree, AcceptsInvalidSettings) {
     for (const int number : {-7, 0, 1, 1 << 30}) {
         KdTree tree(KdTree::Settings{.leaf_boxes = number, .bins = number, .node_cost = -1});
         ASSERT_NO_FATAL_FAILURE(expect_sound(tree, random_cubes(300, 10, 7)));
     }
 }
 
-TEST(KdTree, TakesABranchInOneCall) {
+TEST(KdTree, PassesABranchInOneCall) {
     KdTree tree;
     tree.build(random_cubes(1000, 20, 8));
-    std::size_t calls = 0, asked = 0, taken = 0;
-    tree.cull(CountingRegion{cube({-5, -5, -5}, 50), asked}, [&](std::span<const Proxy> proxies, bool whole) {
-        EXPECT_TRUE(whole);
+    std::size_t calls = 0, tests = 0, taken = 0;
+    tree.cull(CountingRegion{cube({-5, -5, -5}, 50), tests}, [&](std::span<const Proxy> proxies, bool inside) {
+        EXPECT_TRUE(inside);
         ++calls;
         taken += proxies.size();
     });
     EXPECT_EQ(calls, 1u);
-    EXPECT_EQ(asked, 1u);
+    EXPECT_EQ(tests, 1u);
     EXPECT_EQ(taken, 1000u);
 }
 
-TEST(KdTree, FollowsMovesAtCommitAndNoSooner) {
+TEST(KdTree, AppliesChangesAtCommit) {
     KdTree tree;
     tree.build(random_cubes(500, 30, 9));
     const auto hits_at = [&](const Aabb& box) {
@@ -132,8 +132,8 @@ TEST(KdTree, FollowsMovesAtCommitAndNoSooner) {
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(KdTree, OpensNoBranchInWhichAllRest) {
-    // A crowd of boxes in one place, all resting but one: brute force within its leaf would be 700,000 tests.
+TEST(KdTree, SkipsBranchesInWhichAllBoxesSleep) {
+    // Coincident boxes, all asleep except one: testing all pairs of the leaf would be 700,000 tests.
     std::vector<Move> boxes = hard_sets().at("coincident");
     KdTree tree;
     tree.build(boxes);

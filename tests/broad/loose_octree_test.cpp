@@ -17,7 +17,7 @@ std::vector<Move> cubes_of_many_sizes(std::size_t count, std::uint64_t seed) {
     return boxes;
 }
 
-TEST(LooseOctree, HoldsEachBoxInOneLeafOfTwiceTheSize) {
+TEST(LooseOctree, StoresEachBoxInOneEnlargedLeaf) {
     const std::vector<Move> boxes = cubes_of_many_sizes(2000, 1);
     LooseOctree tree(LooseOctree::Settings{.capacity = 4});
     tree.build(boxes);
@@ -32,18 +32,18 @@ TEST(LooseOctree, HoldsEachBoxInOneLeafOfTwiceTheSize) {
         deepest = std::max(deepest, leaf.depth);
         const float side = root / std::ldexp(1.0f, leaf.depth);
         for (const Proxy p : leaf.proxies) {
-            EXPECT_TRUE(contains(grown(leaf.cell, 1e-4f), boxes[p].box)) << p;
+            EXPECT_TRUE(contains(enlarged(leaf.cell, 1e-4f), boxes[p].box)) << p;
             EXPECT_LE(extent(boxes[p].box).x, side);
         }
     });
     EXPECT_GE(deepest, 4);
 }
 
-TEST(LooseOctree, DoesNotKeepASmallBoxHighUpBecauseItLiesAcrossACut) {
+TEST(LooseOctree, StoresASmallBoxDeepAlsoWhenItStraddlesASplit) {
     std::vector<Move> boxes = random_cubes(2000, 64, 2, 0.5f);
     boxes[0].box = cube({0, 0, 0}, 0.5f);
     boxes[1].box = cube({63.5f, 63.5f, 63.5f}, 0.5f);
-    boxes[2].box = cube({31.9f, 31.9f, 31.9f}, 0.2f);  // the middle of the root
+    boxes[2].box = cube({31.9f, 31.9f, 31.9f}, 0.2f);  // contains the centre of the root
     LooseOctree tree;
     tree.build(boxes);
     tree.for_each_leaf([&](const Leaf& leaf) {
@@ -52,7 +52,7 @@ TEST(LooseOctree, DoesNotKeepASmallBoxHighUpBecauseItLiesAcrossACut) {
     });
 }
 
-TEST(LooseOctree, KeepsLargeBoxesWhereSmallOnesGoDeeper) {
+TEST(LooseOctree, StoresLargeBoxesAboveSmallOnes) {
     std::vector<Move> boxes = random_cubes(500, 32, 3, 0.1f);
     for (Proxy p = 500; p < 540; ++p) boxes.push_back({p, cube({6, 6, 6}, 20)});
     LooseOctree tree(LooseOctree::Settings{.capacity = 8});
@@ -67,10 +67,10 @@ TEST(LooseOctree, KeepsLargeBoxesWhereSmallOnesGoDeeper) {
             EXPECT_GT(leaf.depth, 0);
         }
     });
-    EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+    EXPECT_EQ(pairs_of(tree), pairs_of(reference_of(boxes)));
 }
 
-TEST(LooseOctree, EndsWhereBoxesCoincide) {
+TEST(LooseOctree, StopsSplittingWhereBoxesCoincide) {
     std::vector<Move> boxes = random_cubes(200, 100, 4, 0.001f);
     for (Proxy p = 200; p < 1500; ++p) boxes.push_back({p, cube({50, 50, 50}, 0)});
     LooseOctree tree;
@@ -82,16 +82,16 @@ TEST(LooseOctree, EndsWhereBoxesCoincide) {
 }
 
 TEST(LooseOctree, FindsBoxesOutsideTheDeclaredBounds) { finds_boxes_outside_the_declared_bounds<LooseOctree>(); }
-TEST(LooseOctree, HandsOverWholeBranches) { hands_over_whole_branches<LooseOctree>(); }
-TEST(LooseOctree, OpensNearBranchesFirst) { opens_near_branches_first<LooseOctree>(); }
-TEST(LooseOctree, FindsTheSameInParallel) { finds_the_same_in_parallel<LooseOctree>(); }
-TEST(LooseOctree, ReusesAllPools) { reuses_all_pools<LooseOctree>(); }
-TEST(LooseOctree, NeedsNoMoreMemoryOnceWarm) { needs_no_more_memory_once_warm<LooseOctree>(); }
+TEST(LooseOctree, PassesCompleteBranches) { passes_complete_branches<LooseOctree>(); }
+TEST(LooseOctree, VisitsNearBranchesFirst) { visits_near_branches_first<LooseOctree>(); }
+TEST(LooseOctree, FindsTheSamePairsInParallel) { finds_the_same_pairs_in_parallel<LooseOctree>(); }
+TEST(LooseOctree, ReusesAllArrays) { reuses_all_arrays<LooseOctree>(); }
+TEST(LooseOctree, DoesNotAllocateOnceWarm) { does_not_allocate_once_warm<LooseOctree>(); }
 RC_GTEST_PROP(LooseOctree, reports_each_pair_once_for_arbitrary_boxes, ()) {
     like_brute_force_for_arbitrary_boxes<LooseOctree>();
 }
 
-TEST(LooseOctree, ReportsTheSameForAnySettings) {
+TEST(LooseOctree, ReportsTheSamePairsForAnySettings) {
     const std::vector<Move> boxes = cubes_of_many_sizes(500, 5);
     for (const LooseOctree::Settings& settings :
          {LooseOctree::Settings{.capacity = 0}, LooseOctree::Settings{.capacity = 1000},

@@ -25,22 +25,22 @@ TEST(Octree, SplitsACubeThatHoldsMoreThanItsCapacity) {
     EXPECT_EQ(tree.nodes(), 1u);
 }
 
-TEST(Octree, PutsABoxInEveryLeafThatItOverlaps) { puts_a_box_in_every_leaf_that_it_overlaps<Octree>(); }
-TEST(Octree, MakesChildrenOnlyWhereSomethingEnters) { makes_children_only_where_something_enters<Octree>(); }
-TEST(Octree, EndsWhereBoxesCoincide) { ends_where_boxes_coincide<Octree>(); }
+TEST(Octree, StoresABoxInEveryLeafThatItOverlaps) { stores_a_box_in_every_leaf_that_it_overlaps<Octree>(); }
+TEST(Octree, CreatesNoEmptyChildren) { creates_no_empty_children<Octree>(); }
+TEST(Octree, StopsSplittingWhereBoxesCoincide) { stops_splitting_where_boxes_coincide<Octree>(); }
 TEST(Octree, KeepsFewEntriesForHugeBoxes) { keeps_few_entries_for_huge_boxes<Octree>(); }
-TEST(Octree, SplitsACrowdBelowAHugeBox) { splits_a_crowd_below_a_huge_box<Octree>(); }
+TEST(Octree, SplitsAClusterBelowAHugeBox) { splits_a_cluster_below_a_huge_box<Octree>(); }
 TEST(Octree, FindsBoxesOutsideTheDeclaredBounds) { finds_boxes_outside_the_declared_bounds<Octree>(); }
-TEST(Octree, HandsOverWholeBranches) { hands_over_whole_branches<Octree>(); }
-TEST(Octree, OpensNearBranchesFirst) { opens_near_branches_first<Octree>(); }
-TEST(Octree, FindsTheSameInParallel) { finds_the_same_in_parallel<Octree>(); }
-TEST(Octree, ReusesAllPools) { reuses_all_pools<Octree>(); }
-TEST(Octree, NeedsNoMoreMemoryOnceWarm) { needs_no_more_memory_once_warm<Octree>(); }
+TEST(Octree, PassesCompleteBranches) { passes_complete_branches<Octree>(); }
+TEST(Octree, VisitsNearBranchesFirst) { visits_near_branches_first<Octree>(); }
+TEST(Octree, FindsTheSamePairsInParallel) { finds_the_same_pairs_in_parallel<Octree>(); }
+TEST(Octree, ReusesAllArrays) { reuses_all_arrays<Octree>(); }
+TEST(Octree, DoesNotAllocateOnceWarm) { does_not_allocate_once_warm<Octree>(); }
 RC_GTEST_PROP(Octree, reports_each_pair_once_for_arbitrary_boxes, ()) {
     like_brute_force_for_arbitrary_boxes<Octree>();
 }
 
-/// Three pairs of slabs, crossed so that two boxes are visitors in the leaf where what they share begins.
+/// Three sets of crossed slabs: two boxes are both references in the leaf where their intersection begins.
 TEST(Octree, ReportsCrossedSlabsOnce) {
     std::vector<Move> boxes = random_cubes(400, 16, 2, 0.2f);
     Proxy next = 400;
@@ -53,7 +53,7 @@ TEST(Octree, ReportsCrossedSlabsOnce) {
     expect_like_brute_force(tree, boxes);
 }
 
-TEST(Octree, ReportsTheSameForAnySettings) {
+TEST(Octree, ReportsTheSamePairsForAnySettings) {
     const std::vector<Move> boxes = random_cubes(500, 12, 3);
     for (const Octree::Settings& settings :
          {Octree::Settings{.capacity = 0}, Octree::Settings{.max_depth = 0}, Octree::Settings{.max_depth = -3},
@@ -63,8 +63,8 @@ TEST(Octree, ReportsTheSameForAnySettings) {
     }
 }
 
-/// Needles as long as the world: each cut across them saves tests, and doubles the entries.
-TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
+/// Needles as long as the world: each split of them saves tests and doubles the entries.
+TEST(Octree, LimitsTheEntriesOfNeedles) {
     Random random(5);
     std::vector<Move> boxes;
     for (Proxy p = 0; p < 4000; ++p) {
@@ -74,10 +74,10 @@ TEST(Octree, GivesNeedlesNoMoreEntriesThanItMay) {
     Octree tree(Octree::Settings{.capacity = 1});
     expect_like_brute_force(tree, boxes);
     EXPECT_LE(stats_of(tree).entries, Octree::max_entries * boxes.size());
-    EXPECT_GT(stats_of(tree).entries, Octree::max_entries / 2 * boxes.size()) << "the limit is not put to the test";
+    EXPECT_GT(stats_of(tree).entries, Octree::max_entries / 2 * boxes.size()) << "the boxes do not reach the limit";
 }
 
-/// More boxes in one leaf than are tested in one go, awake and not.
+/// More boxes in one leaf than fit in one block of tests, awake and asleep.
 TEST(Octree, TestsLeavesOfAnySize) {
     Random random(4);
     std::vector<Move> boxes;

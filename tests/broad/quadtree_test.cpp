@@ -26,7 +26,7 @@ TEST(Quadtree, SplitsASquareThatHoldsMoreThanItsCapacity) {
 TEST(Quadtree, HalvesOnlyTheAxesOfItsPlane) {
     struct Case {
         Quadtree::Plane plane;
-        int endless;
+        int unbounded_axis;
     };
     for (const Case& c : {Case{Quadtree::Plane::xz, 1}, Case{Quadtree::Plane::xy, 2}, Case{Quadtree::Plane::yz, 0}}) {
         Quadtree tree(Quadtree::Settings{.capacity = 4, .plane = c.plane});
@@ -35,29 +35,30 @@ TEST(Quadtree, HalvesOnlyTheAxesOfItsPlane) {
         tree.for_each_leaf([&](const Leaf& leaf) {
             EXPECT_GT(leaf.depth, 0);
             for (int axis = 0; axis < 3; ++axis)
-                EXPECT_EQ(extent(leaf.cell)[axis] > 12, axis == c.endless) << "axis " << axis;
+                EXPECT_EQ(extent(leaf.cell)[axis] > 12, axis == c.unbounded_axis) << "axis " << axis;
         });
-        EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+        EXPECT_EQ(pairs_of(tree), pairs_of(reference_of(boxes)));
         for (Move& m : boxes)
             m.box = cube(Vec3{m.proxy == 0 ? 9.0f : 0.0f, m.proxy == 0 ? 9.0f : 0.0f, m.proxy == 0 ? 9.0f : 0.0f});
-        for (Move& m : boxes) m.box.hi[c.endless] = m.box.lo[c.endless] = static_cast<float>(m.proxy) * 10;
+        for (Move& m : boxes)
+            m.box.hi[c.unbounded_axis] = m.box.lo[c.unbounded_axis] = static_cast<float>(m.proxy) * 10;
         tree.build(boxes);
         EXPECT_EQ(stats_of(tree).largest_leaf, 299u) << "boxes above each other share a cell";
         EXPECT_TRUE(pairs_of(tree).empty());
     }
 }
 
-TEST(Quadtree, PutsABoxInEveryLeafThatItOverlaps) { puts_a_box_in_every_leaf_that_it_overlaps<Quadtree>(); }
-TEST(Quadtree, MakesChildrenOnlyWhereSomethingEnters) { makes_children_only_where_something_enters<Quadtree>(); }
-TEST(Quadtree, EndsWhereBoxesCoincide) { ends_where_boxes_coincide<Quadtree>(); }
+TEST(Quadtree, StoresABoxInEveryLeafThatItOverlaps) { stores_a_box_in_every_leaf_that_it_overlaps<Quadtree>(); }
+TEST(Quadtree, CreatesNoEmptyChildren) { creates_no_empty_children<Quadtree>(); }
+TEST(Quadtree, StopsSplittingWhereBoxesCoincide) { stops_splitting_where_boxes_coincide<Quadtree>(); }
 TEST(Quadtree, KeepsFewEntriesForHugeBoxes) { keeps_few_entries_for_huge_boxes<Quadtree>(); }
-TEST(Quadtree, SplitsACrowdBelowAHugeBox) { splits_a_crowd_below_a_huge_box<Quadtree>(); }
+TEST(Quadtree, SplitsAClusterBelowAHugeBox) { splits_a_cluster_below_a_huge_box<Quadtree>(); }
 TEST(Quadtree, FindsBoxesOutsideTheDeclaredBounds) { finds_boxes_outside_the_declared_bounds<Quadtree>(); }
-TEST(Quadtree, HandsOverWholeBranches) { hands_over_whole_branches<Quadtree>(); }
-TEST(Quadtree, OpensNearBranchesFirst) { opens_near_branches_first<Quadtree>(); }
-TEST(Quadtree, FindsTheSameInParallel) { finds_the_same_in_parallel<Quadtree>(); }
-TEST(Quadtree, ReusesAllPools) { reuses_all_pools<Quadtree>(); }
-TEST(Quadtree, NeedsNoMoreMemoryOnceWarm) { needs_no_more_memory_once_warm<Quadtree>(); }
+TEST(Quadtree, PassesCompleteBranches) { passes_complete_branches<Quadtree>(); }
+TEST(Quadtree, VisitsNearBranchesFirst) { visits_near_branches_first<Quadtree>(); }
+TEST(Quadtree, FindsTheSamePairsInParallel) { finds_the_same_pairs_in_parallel<Quadtree>(); }
+TEST(Quadtree, ReusesAllArrays) { reuses_all_arrays<Quadtree>(); }
+TEST(Quadtree, DoesNotAllocateOnceWarm) { does_not_allocate_once_warm<Quadtree>(); }
 RC_GTEST_PROP(Quadtree, reports_each_pair_once_for_arbitrary_boxes, ()) {
     like_brute_force_for_arbitrary_boxes<Quadtree>();
 }
@@ -76,10 +77,10 @@ TEST(Quadtree, ReportsAPairThatSharesManyLeavesOnce) {
         shared += holds(300) && holds(301) ? 1 : 0;
     });
     EXPECT_GT(shared, 20u);
-    EXPECT_EQ(pairs_of(tree), pairs_of(judge_of(boxes)));
+    EXPECT_EQ(pairs_of(tree), pairs_of(reference_of(boxes)));
 }
 
-TEST(Quadtree, ReportsTheSameForAnySettings) {
+TEST(Quadtree, ReportsTheSamePairsForAnySettings) {
     const std::vector<Move> boxes = random_cubes(500, 12, 3);
     for (const Quadtree::Settings& settings :
          {Quadtree::Settings{.capacity = 0}, Quadtree::Settings{.max_depth = 0}, Quadtree::Settings{.max_depth = -3},

@@ -30,7 +30,7 @@ RowGrid grid_of(const std::vector<Move>& boxes, const RowGrid::Settings& setting
     return grid;
 }
 
-/// Runs `body` once for every instruction set that this machine has, with its name.
+/// Runs `body` once for every instruction set of this machine, with its name.
 template <class Body> void for_each_target(Body&& body) {
     for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
         const std::int64_t target = rest & -rest;
@@ -56,7 +56,7 @@ TEST(RowGrid, FindsTheSamePairsInTheSameOrderWithEveryInstructionSet) {
             EXPECT_TRUE(pairs == first);
         });
         std::sort(first.begin(), first.end());
-        EXPECT_EQ(first, judged(boxes));
+        EXPECT_EQ(first, reference_pairs(boxes));
     }
 }
 
@@ -68,7 +68,7 @@ TEST(RowGrid, FindsTheSamePairsInTheSameOrderWithAnyNumberOfThreads) {
     const std::vector<Pair> serial = found(grid);
     for (const int threads : {1, 2, 3, 8}) {
         const auto tasks = make_thread_runner(threads);
-        std::vector<Pair> pairs{{7, 9}};  // what is there stays
+        std::vector<Pair> pairs{{7, 9}};  // existing pairs stay
         grid.find_pairs(*tasks, pairs);
         ASSERT_EQ(pairs.front(), (Pair{7, 9}));
         pairs.erase(pairs.begin());
@@ -96,8 +96,8 @@ TEST(RowGrid, StoresTheSameWithAnyNumberOfThreads) {
     }
 }
 
-TEST(RowGrid, StoresTheSameWhenItDealsManyBoxesOut) {
-    const std::vector<Move> boxes = gas(row_grid::past_caches + 5, 14);
+TEST(RowGrid, StoresTheSameWhenBoxesExceedTheCaches) {
+    const std::vector<Move> boxes = gas(row_grid::out_of_cache_boxes + 5, 14);
     std::vector<Pair> serial;
     for (const int threads : {1, 2, 3}) {
         const auto tasks = make_thread_runner(threads);
@@ -110,7 +110,7 @@ TEST(RowGrid, StoresTheSameWhenItDealsManyBoxesOut) {
     }
 }
 
-TEST(RowGrid, SeesAtCommitWhichBoxesHaveBecomeOddOrOrdinary) {
+TEST(RowGrid, ReclassifiesRegularAndUnboundedBoxesAtCommit) {
     const float nan = std::nanf("");
     const std::array<Aabb, 4> unbounded{Aabb::everything(), Aabb{{1, 1, 1}, {0, 0, 0}}, Aabb{{nan, 0, 0}, {1, 1, 1}},
                                         Aabb{{0, 0, -1e18f}, {1, 1, 1}}};
@@ -124,13 +124,13 @@ TEST(RowGrid, SeesAtCommitWhichBoxesHaveBecomeOddOrOrdinary) {
                 boxes[p].box = (p + static_cast<Proxy>(step)) % 300 == 0 ? unbounded[p / 300 % 4] : usual[p].box;
                 grid.move(p, boxes[p].box);
             }
-            if (step == 4) {  // all at once
+            if (step == 4) {  // all boxes
                 for (Move& m : boxes) m.box = unbounded[m.proxy % 4];
                 for (const Move& m : boxes) grid.move(m.proxy, m.box);
             }
             grid.commit();
             ASSERT_EQ(grid.broken_invariant(), "");
-            ASSERT_EQ(sorted_pairs(grid), judged(boxes));
+            ASSERT_EQ(sorted_pairs(grid), reference_pairs(boxes));
         }
     });
 }
@@ -147,16 +147,16 @@ TEST(RowGrid, FindsEveryPairOfALatticeOfTouchingBoxes) {
         for (const Rows rows : {Rows::Table, Rows::List}) {
             const RowGrid grid = grid_of(boxes, {.rows = rows});
             EXPECT_EQ(grid.broken_invariant(), "");
-            constexpr std::size_t along = 3 * side - 2;  // neighbours of all boxes of a line, themselves among them
+            constexpr std::size_t along = 3 * side - 2;  // neighbours of all boxes of a line, themselves included
             EXPECT_EQ(found(grid).size(), (along * along * along - boxes.size()) / 2);
         }
     }
 }
 
-TEST(RowGrid, TellsTouchingFromJustNotTouching) {
+TEST(RowGrid, DistinguishesTouchingFromBarelySeparated) {
     const float after_one = std::nextafter(1.0f, 2.0f);
     for (int axis = 0; axis < 3; ++axis) {
-        std::vector<Move> boxes = gas(500, 3, {50, 50, 50});  // so that there are cells
+        std::vector<Move> boxes = gas(500, 3, {50, 50, 50});  // so that the grid has cells
         Aabb apart{{0, 0, 0}, {1, 1, 1}}, touching = apart;
         apart.lo[axis] = after_one;
         apart.hi[axis] = 2;
@@ -173,19 +173,19 @@ TEST(RowGrid, TellsTouchingFromJustNotTouching) {
     }
 }
 
-TEST(RowGrid, TakesMinusZeroForZero) {
+TEST(RowGrid, TreatsMinusZeroAsZero) {
     std::vector<Move> boxes{{0, {{-1, -1, -1}, {-0.0f, -0.0f, -0.0f}}}, {1, {{0.0f, 0.0f, 0.0f}, {1, 1, 1}}}};
     for (const Rows rows : {Rows::Table, Rows::List})
         EXPECT_EQ(found(grid_of(boxes, {.rows = rows})), (std::vector<Pair>{{0, 1}}));
     const std::vector<Move> query_box{{2, boxes[0].box}};
     for (const Move& stored : {Move{1, boxes[1].box}, Move{1, {{-0.0f, -0.0f, -0.0f}, {1, 1, 1}}}}) {
-        std::vector<Pair> asked;
-        grid_of({stored}).find_pairs_of(query_box, {}, asked);
-        EXPECT_EQ(asked, (std::vector<Pair>{{1, 2}}));
+        std::vector<Pair> pairs;
+        grid_of({stored}).find_pairs_of(query_box, {}, pairs);
+        EXPECT_EQ(pairs, (std::vector<Pair>{{1, 2}}));
     }
 }
 
-TEST(RowGrid, MovesManyAtOnceToWhereItMovesThemOneByOne) {
+TEST(RowGrid, GivesTheSameResultForBulkMovesAndSingleMoves) {
     const auto many = make_thread_runner(3);
     const std::vector<Move> boxes = gas(50000, 12);
     for (TaskRunner* const tasks : {static_cast<TaskRunner*>(nullptr), many.get()}) {
@@ -230,11 +230,11 @@ TEST(RowGrid, KeepsItsCellsSmallWhenOneBoxIsFarAway) {
         const RowGrid grid = grid_of(boxes);
         EXPECT_EQ(grid.broken_invariant(), "");
         EXPECT_LE(stats_of(grid).largest_leaf, 2 * usual);
-        EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+        EXPECT_EQ(sorted_pairs(grid), reference_pairs(boxes));
     }
 }
 
-TEST(RowGrid, FollowsAWorldThatDriftsAndGrows) {
+TEST(RowGrid, AdaptsItsCellsToADriftingAndGrowingWorld) {
     std::vector<Move> boxes = gas(4000, 5);
     RowGrid grid = grid_of(boxes);
     const std::size_t usual = stats_of(grid).largest_leaf;
@@ -249,12 +249,12 @@ TEST(RowGrid, FollowsAWorldThatDriftsAndGrows) {
         ASSERT_EQ(grid.broken_invariant(), "");
         ASSERT_LE(stats_of(grid).largest_leaf, 3 * usual) << step;
         if (step % 15 == 14) {
-            ASSERT_EQ(sorted_pairs(grid), judged(boxes));
+            ASSERT_EQ(sorted_pairs(grid), reference_pairs(boxes));
         }
     }
 }
 
-TEST(RowGrid, NoticesAtOnceWhenAllBoxesLeapAway) {
+TEST(RowGrid, AdaptsItsCellsImmediatelyWhenAllBoxesJump) {
     std::vector<Move> boxes = gas(4000, 6);
     RowGrid grid = grid_of(boxes);
     const std::size_t usual = stats_of(grid).largest_leaf;
@@ -264,10 +264,10 @@ TEST(RowGrid, NoticesAtOnceWhenAllBoxesLeapAway) {
     }
     grid.commit();
     EXPECT_LE(stats_of(grid).largest_leaf, 2 * usual);
-    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+    EXPECT_EQ(sorted_pairs(grid), reference_pairs(boxes));
 }
 
-/// Clusters somewhere in a large world: of so many boxes each, spread over `spread` metres.
+/// Clusters at random places of a large world: `together` boxes each, spread over `spread` metres.
 std::vector<Move> far_clusters(std::size_t count, std::uint64_t seed, std::size_t together, float spread,
                                float half_world = 5e5f) {
     Random random(seed);
@@ -285,24 +285,24 @@ TEST(RowGrid, ListsTheRowsOfAWorldThatIsNearlyEmpty) {
     const std::vector<Move> boxes = far_clusters(6000, 7, 1000, 13);
     const RowGrid grid = grid_of(boxes);
     EXPECT_EQ(grid.broken_invariant(), "");
-    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
-    EXPECT_LT(stats_of(grid).largest_leaf, 64u) << "a cluster of a thousand lies in one cell";
+    EXPECT_EQ(sorted_pairs(grid), reference_pairs(boxes));
+    EXPECT_LT(stats_of(grid).largest_leaf, 64u) << "a cluster of a thousand boxes is in one cell";
 }
 
-TEST(RowGrid, HasMoreCellsWhereBoxesCrowdInSomeOfThem) {
-    // A thousandth of the world: with four cells for five boxes, those that are not empty would hold many.
+TEST(RowGrid, UsesMoreCellsWhenBoxesCrowdInAFewOfThem) {
+    // The boxes occupy a thousandth of the world: with four cells for five boxes, the used cells would hold many.
     const std::vector<Move> boxes = far_clusters(20000, 12, 2500, 18, 90);
     const RowGrid grid = grid_of(boxes);
     EXPECT_EQ(grid.broken_invariant(), "");
-    EXPECT_EQ(sorted_pairs(grid), judged(boxes));
+    EXPECT_EQ(sorted_pairs(grid), reference_pairs(boxes));
     const StructureStats stats = stats_of(grid);
     EXPECT_LT(stats.entries, 16 * stats.leaves);
     EXPECT_LE(grid.bytes(), 84 * boxes.size());
-    const StructureStats fewer = stats_of(grid_of(boxes, {.cells_a_box = 0.16f}));
+    const StructureStats fewer = stats_of(grid_of(boxes, {.cells_per_box = 0.16f}));
     EXPECT_GT(fewer.entries, 40 * fewer.leaves) << "the grid above has no more cells than usual";
 }
 
-TEST(RowGrid, TakesMemoryByTheNumberOfBoxesWhereverTheyAre) {
+TEST(RowGrid, LimitsItsMemoryByTheNumberOfBoxes) {
     Random random(8);
     std::vector<std::vector<Move>> worlds{gas(20000, 8), far_clusters(20000, 9, 1000, 13),
                                           far_clusters(20000, 10, 100, 6)};
@@ -313,13 +313,13 @@ TEST(RowGrid, TakesMemoryByTheNumberOfBoxesWhereverTheyAre) {
     for (const std::vector<Move>& boxes : worlds) {
         for (const Rows rows : {Rows::Chosen, Rows::Table}) {
             const RowGrid grid = grid_of(boxes, {.rows = rows});
-            const bool listed = &boxes == &worlds[1] && rows == Rows::Chosen;  // sorted in three columns beside
+            const bool listed = &boxes == &worlds[1] && rows == Rows::Chosen;  // the sort needs three more columns
             EXPECT_LE(grid.bytes(), (listed ? 130 : 66) * boxes.size());
         }
     }
 }
 
-TEST(RowGrid, SearchesOnlyWhereAQueryReaches) {
+TEST(RowGrid, TestsOnlyBoxesNearAQuery) {
     const std::vector<Move> boxes = gas(5000, 11);
     const RowGrid grid = grid_of(boxes);
     std::size_t tested = 0;
@@ -336,16 +336,16 @@ TEST(RowGrid, SearchesOnlyWhereAQueryReaches) {
     EXPECT_LT(tested, 100 * boxes.size());
 }
 
-/// What a caller may set and store must not be seen in the pairs.
-RC_GTEST_PROP(RowGridProperty, FindsThePairsOfBruteForceWhateverItsSettings, ()) {
+/// Settings must not affect the pairs.
+RC_GTEST_PROP(RowGridProperty, FindsTheSamePairsAsBruteForceForAnySettings, ()) {
     RowGrid::Settings settings;
     settings.rows = static_cast<Rows>(*rc::gen::inRange(0, 3));
     settings.cell = *rc::gen::element(0.0f, 1e-3f, 0.7f, 3.0f, 1e9f);
     settings.cells_along = *rc::gen::element(0.25f, 1.0f, 3.0f, 20.0f);
     settings.side_share = *rc::gen::element(0.1f, 1.0f, 5.0f);
     settings.level_ratio = *rc::gen::element(1.0f, 2.0f, 10.0f);
-    settings.cells_a_box = *rc::gen::element(0.0f, 1.0f, 30.0f);
-    settings.fit_lasts = *rc::gen::inRange(1u, 5u);
+    settings.cells_per_box = *rc::gen::element(0.0f, 1.0f, 30.0f);
+    settings.max_fit_age = *rc::gen::inRange(1u, 5u);
     settings.sample = *rc::gen::inRange(0u, 300u);
     Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
     const float world = *rc::gen::element(0.0f, 5.0f, 50.0f, 1e6f);
@@ -363,7 +363,7 @@ RC_GTEST_PROP(RowGridProperty, FindsThePairsOfBruteForceWhateverItsSettings, ())
     for (int step = 0; step < 4; ++step) {
         grid.commit();
         RC_ASSERT(grid.broken_invariant() == "");
-        RC_ASSERT(sorted_pairs(grid) == judged(boxes));
+        RC_ASSERT(sorted_pairs(grid) == reference_pairs(boxes));
         for (Move& m : boxes) {
             if (random.below(3) != 0) continue;
             m.box = draw();

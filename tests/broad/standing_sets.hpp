@@ -1,5 +1,5 @@
 #pragma once
-/// Sets of boxes that are hard for trees of planes, and what can be read off a tree.
+/// Sets of boxes that are hard for plane trees, and checks of a tree.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline std::vector<Move> random_cubes(std::size_t count, float world, std::uint6
     return numbered(boxes);
 }
 
-/// Sets that have made trees deep, large or slow, by name; 1,200 boxes each.
+/// Sets that make trees deep, large or slow, by name; 1,200 boxes each.
 inline std::map<std::string, std::vector<Move>> hard_sets() {
     constexpr int count = 1200;
     Random random(31);
@@ -53,19 +53,19 @@ inline std::map<std::string, std::vector<Move>> hard_sets() {
     return numbered_sets;
 }
 
-/// Region that counts how many boxes it was asked about.
+/// A region that counts its box tests.
 struct CountingRegion {
     Aabb box;
-    std::size_t& asked;
+    std::size_t& tests;
     [[nodiscard]] bool touches(const Aabb& other) const {
-        ++asked;
+        ++tests;
         return overlaps(box, other);
     }
     [[nodiscard]] bool contains(const Aabb& other) const { return fase::contains(box, other); }
     [[nodiscard]] Aabb bounds() const { return box; }
 };
 
-/// What holds for a tree of planes over any set: right, each box in one leaf, memory and depth bounded.
+/// Checks a plane tree over any set: correct pairs, each box in one leaf, bounded memory and depth.
 template <class S> void expect_sound(S& structure, const std::vector<Move>& boxes) {
     structure.build(boxes);
     ASSERT_EQ(structure.broken_invariant(), "");
@@ -74,11 +74,11 @@ template <class S> void expect_sound(S& structure, const std::vector<Move>& boxe
     EXPECT_LE(stats.nodes, 2 * boxes.size());
     EXPECT_LT(stats.depth, 100);
     EXPECT_LT(stats.bytes, 400 * boxes.size() + 4096);
-    EXPECT_TRUE(sorted_pairs(structure) == judged(boxes));
+    EXPECT_TRUE(sorted_pairs(structure) == reference_pairs(boxes));
 }
 
-/// The boxes of a file of `min max` lines that others have made; empty when it is missing.
-inline std::vector<Move> boxes_of_others(const std::string& file) {
+/// Reads the boxes of a third-party file of `min max` lines; empty when the file is missing.
+inline std::vector<Move> boxes_from_file(const std::string& file) {
     std::ifstream text(std::filesystem::path(FASE_SHARED_DATA) / "trees" / file);
     std::vector<Aabb> boxes;
     Aabb box;

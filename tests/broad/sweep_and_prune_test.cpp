@@ -28,18 +28,18 @@ std::vector<Move> random_boxes(std::size_t count, Vec3 world, float side, std::u
     return boxes;
 }
 
-/// Counts how many boxes, of nodes or stored, it is asked about.
+/// Counts its box tests, of nodes and of stored boxes.
 struct CountingRegion {
     Aabb box;
-    std::size_t* asked;
+    std::size_t* tests;
     [[nodiscard]] bool touches(const Aabb& other) const {
-        ++*asked;
+        ++*tests;
         return overlaps(box, other);
     }
     [[nodiscard]] Aabb bounds() const { return box; }
 };
 
-TEST(RadixSort, OrdersAllFloatsAndKeepsTheOrderOfEquals) {
+TEST(RadixSort, SortsAllFloatsAndIsStable) {
     const float inf = Aabb::infinity;
     const std::vector<float> values = {3, -0.0f, 0, 1e-45f, -1e-45f, -inf, inf, -3, 3e38f, -3e38f, 0, -0.0f, 1, -1};
     std::vector<std::uint64_t> items, scratch;
@@ -55,14 +55,14 @@ TEST(RadixSort, OrdersAllFloatsAndKeepsTheOrderOfEquals) {
     for (const float value : values) EXPECT_EQ(value_of_key(ordered_key(value)), value);
 }
 
-TEST(SweepAxis, IsTheOneOnWhichBoxesOverlapLeast) {
+TEST(SweepAxis, IsTheAxisWithTheFewestOverlaps) {
     EXPECT_EQ(best_sweep_axis(random_boxes(500, {1, 1, 100}, 1, 1), 0), 2);
     EXPECT_EQ(best_sweep_axis(random_boxes(500, {1, 100, 1}, 1, 2), 0), 1);
     EXPECT_EQ(best_sweep_axis(random_boxes(500, {100, 1, 1}, 1, 3), 2), 0);
     std::vector<Move> boxes = random_boxes(500, {100, 1, 1}, 1, 4);
-    boxes[7].box = {{0, 1e9f, 0}, {1, 1e9f, 1}};  // one far away does not decide
+    boxes[7].box = {{0, 1e9f, 0}, {1, 1e9f, 1}};  // one distant box has no effect
     EXPECT_EQ(best_sweep_axis(boxes, 1), 0);
-    EXPECT_EQ(best_sweep_axis(random_boxes(500, {50, 50, 50}, 1, 5), 1), 1) << "changes without need";
+    EXPECT_EQ(best_sweep_axis(random_boxes(500, {50, 50, 50}, 1, 5), 1), 1) << "changes without a reason";
     EXPECT_EQ(best_sweep_axis({}, 2), 2);
 }
 
@@ -79,40 +79,40 @@ TEST(SweepAndPrune, FindsTheSamePairsAlongEveryAxis) {
     }
 }
 
-TEST(SweepAndPrune, SortsBothRowsAnewWhenTheAxisChanges) {
+TEST(SweepAndPrune, SortsBothListsWhenTheAxisChanges) {
     std::vector<Move> boxes = random_boxes(300, {100, 5, 5}, 1, 7);
     SweepAndPrune s = filled(SweepAndPrune(), boxes);
     for (Proxy p = 0; p < 300; p += 2) s.set_awake(p, false);
     s.commit();
     ASSERT_EQ(s.axis(), 0);
-    BruteForce judge = filled(BruteForce(), boxes);
+    BruteForce reference = filled(BruteForce(), boxes);
     boxes = random_boxes(300, {5, 5, 500}, 1, 8);
     for (Proxy p = 0; p < 300; ++p) {
         s.move(p, boxes[p].box);
-        judge.move(p, boxes[p].box);
+        reference.move(p, boxes[p].box);
     }
     s.commit();
     EXPECT_EQ(s.axis(), 2);
     EXPECT_EQ(s.broken_invariant(), "");
-    EXPECT_EQ(sorted_pairs(s), sorted_pairs(judge));
+    EXPECT_EQ(sorted_pairs(s), sorted_pairs(reference));
 }
 
-TEST(SweepAndPrune, DoesNotLookAtAllBoxesForASmallRegionEvenBesideAHugeBox) {
+TEST(SweepAndPrune, TestsFewBoxesForASmallRegionEvenWithAHugeBox) {
     std::vector<Move> boxes = random_boxes(20000, {1000, 10, 10}, 0.5f, 9);
     for (const bool huge : {false, true}) {
         if (huge) boxes[3].box = {{0, 0, 0}, {1000, 10, 10}};
         const SweepAndPrune s = filled(SweepAndPrune(), boxes);
-        std::size_t asked = 0, found = 0;
-        s.traverse(CountingRegion{{{500, 0, 0}, {501, 10, 10}}, &asked}, [&](Proxy, const Aabb&) {
+        std::size_t tests = 0, found = 0;
+        s.traverse(CountingRegion{{{500, 0, 0}, {501, 10, 10}}, &tests}, [&](Proxy, const Aabb&) {
             ++found;
             return true;
         });
         EXPECT_GT(found, 10u);
-        EXPECT_LT(asked, 600u);
+        EXPECT_LT(tests, 600u);
     }
 }
 
-TEST(SweepAndPrune, TakesWholeRunsThatARegionContains) {
+TEST(SweepAndPrune, AcceptsCompleteRunsInsideARegion) {
     const SweepAndPrune s = filled(SweepAndPrune(), random_boxes(20000, {1000, 10, 10}, 0.5f, 10));
     std::size_t calls = 0, whole = 0, partly = 0;
     s.cull(BoxRegion{{{100, -1, -1}, {900, 11, 11}}}, [&](std::span<const Proxy> proxies, bool is_whole) {
@@ -124,29 +124,29 @@ TEST(SweepAndPrune, TakesWholeRunsThatARegionContains) {
     EXPECT_LT(calls, 400u);
 }
 
-TEST(SweepAndPrune, FollowsBoxesThatMoveAmongThoseThatRest) {
+TEST(SweepAndPrune, FindsPairsOfBoxesThatMoveAmongRestingOnes) {
     std::vector<Move> boxes = random_boxes(600, {30, 8, 8}, 1, 11);
     SweepAndPrune s = filled(SweepAndPrune(), boxes);
-    BruteForce judge = filled(BruteForce(), boxes);
+    BruteForce reference = filled(BruteForce(), boxes);
     for (Proxy p = 20; p < 600; ++p) {
         s.set_awake(p, false);
-        judge.set_awake(p, false);
+        reference.set_awake(p, false);
     }
     Random random(12);
     for (int step = 0; step < 20; ++step) {
         for (Proxy p = 0; p < 20; ++p) {
             const Vec3 by{random.between(-1, 1), 0, random.between(-1, 1)};
             boxes[p].box = {boxes[p].box.lo + by, boxes[p].box.hi + by};
-            if (step == 7 && p == 3) boxes[p].box = Aabb::everything();  // leaves the row …
+            if (step == 7 && p == 3) boxes[p].box = Aabb::everything();  // leaves the list …
             if (step == 8 && p == 3) boxes[p].box = boxes[4].box;        // … and comes back
             s.move(p, boxes[p].box);
-            judge.move(p, boxes[p].box);
+            reference.move(p, boxes[p].box);
         }
         s.commit();
         ASSERT_EQ(s.broken_invariant(), "");
         std::vector<Pair> pairs, expected;
         s.find_awake_pairs(pairs);
-        judge.find_awake_pairs(expected);
+        reference.find_awake_pairs(expected);
         std::sort(pairs.begin(), pairs.end());
         std::sort(expected.begin(), expected.end());
         ASSERT_EQ(pairs, expected);
@@ -154,14 +154,14 @@ TEST(SweepAndPrune, FollowsBoxesThatMoveAmongThoseThatRest) {
     }
 }
 
-TEST(RunTree, MendsWhatChangedAsIfMadeAnew) {
+TEST(RunTree, GivesTheSameTreeByRefitAsByRebuild) {
     const std::vector<Move> boxes = random_boxes(3000, {50, 50, 50}, 1, 13);
-    RunTree tree, anew;
+    RunTree tree, rebuilt;
     tree.resize(boxes.size());
-    anew.resize(boxes.size());
+    rebuilt.resize(boxes.size());
     for (const Move& m : boxes) {
         tree.put(m.proxy, m.proxy, m.box);
-        anew.put(m.proxy, m.proxy, m.box);
+        rebuilt.put(m.proxy, m.proxy, m.box);
     }
     tree.close();
     Random random(14);
@@ -171,14 +171,14 @@ TEST(RunTree, MendsWhatChangedAsIfMadeAnew) {
         const float x = random.between(-100, 100);
         changed.push_back(at);
         tree.put(at, at, {{x, x, x}, {x + 1, x + 1, x + 1}});
-        anew.put(at, at, {{x, x, x}, {x + 1, x + 1, x + 1}});
+        rebuilt.put(at, at, {{x, x, x}, {x + 1, x + 1, x + 1}});
     }
     EXPECT_NE(tree.broken_invariant(), "");
-    tree.close_around(changed);
-    anew.close();
+    tree.refit(changed);
+    rebuilt.close();
     EXPECT_EQ(tree.broken_invariant(), "");
-    EXPECT_EQ(tree.bounds(), anew.bounds());
-    EXPECT_EQ(tree.nodes(), anew.nodes());
+    EXPECT_EQ(tree.bounds(), rebuilt.bounds());
+    EXPECT_EQ(tree.nodes(), rebuilt.nodes());
 }
 
 }  // namespace

@@ -35,16 +35,16 @@ TEST(UniformGrid, FindsTheSamePairsWithCellsOfAnySize) {
         EXPECT_EQ(grid.broken_invariant(), "");
         EXPECT_EQ(sorted_pairs(grid), expected);
         for (const Move& m : boxes) {
-            std::set<Proxy> found, wanted;
+            std::set<Proxy> found, expected_hits;
             grid.traverse(BoxRegion{m.box}, [&](Proxy p, const Aabb&) { return found.insert(p).second; });
             for (const Move& other : boxes)
-                if (overlaps(m.box, other.box)) wanted.insert(other.proxy);
-            ASSERT_EQ(found, wanted);
+                if (overlaps(m.box, other.box)) expected_hits.insert(other.proxy);
+            ASSERT_EQ(found, expected_hits);
         }
     }
 }
 
-TEST(UniformGrid, ReportsBoxesThatMeetOnTheBordersOfCellsOnce) {
+TEST(UniformGrid, ReportsBoxesThatTouchOnCellBordersOnce) {
     std::vector<Move> boxes;
     for (int x = 0; x < 9; ++x)
         for (int y = 0; y < 9; ++y)
@@ -57,7 +57,7 @@ TEST(UniformGrid, ReportsBoxesThatMeetOnTheBordersOfCellsOnce) {
         EXPECT_EQ(sorted_pairs(filled(UniformGrid(UniformGrid::Settings{.cell = cell}), boxes)), expected);
 }
 
-TEST(UniformGrid, HoldsABoxInAtMostEightCells) {
+TEST(UniformGrid, StoresABoxInAtMostEightCells) {
     const UniformGrid grid = filled(UniformGrid(), random_boxes(5000, 20, 30, 2));
     std::vector<int> entries(5000);
     grid.for_each_leaf([&](const Leaf& leaf) {
@@ -67,7 +67,7 @@ TEST(UniformGrid, HoldsABoxInAtMostEightCells) {
     EXPECT_GE(*std::min_element(entries.begin(), entries.end()), 1);
 }
 
-TEST(UniformGrid, FitsItsCellsToMostBoxesAndNotToTheFewThatAreHugeOrFar) {
+TEST(UniformGrid, FitsItsCellsToMostBoxesAndIgnoresFewHugeOrDistantOnes) {
     std::vector<Move> boxes = random_boxes(2000, 20, 1, 3);
     const double side = filled(UniformGrid(), boxes).cell_side();
     boxes[100].box = {{-1000, -1, -1000}, {1000, 0, 1000}};
@@ -78,7 +78,7 @@ TEST(UniformGrid, FitsItsCellsToMostBoxesAndNotToTheFewThatAreHugeOrFar) {
     EXPECT_EQ(sorted_pairs(grid), sorted_pairs(filled(BruteForce(), boxes)));
 }
 
-TEST(UniformGrid, SurvivesTheEndsOfItsNumbers) {
+TEST(UniformGrid, HandlesCoordinatesBeyondItsCellRange) {
     Random random(4);
     std::vector<Move> boxes = random_boxes(300, 5, 1, 5);
     for (Proxy p = 300; p < 500; ++p) {  // far more than 2^30 cells of a metre away, on all sides
@@ -93,29 +93,29 @@ TEST(UniformGrid, SurvivesTheEndsOfItsNumbers) {
     EXPECT_EQ(sorted_pairs(grid), sorted_pairs(filled(BruteForce(), boxes)));
 }
 
-/// A measure that counts what it is asked.
+/// A measure that counts its evaluations.
 template <class M> struct Counting : M {
-    std::size_t* asked;
-    Counting(const M& measure, std::size_t& count) : M(measure), asked(&count) {}
-    [[nodiscard]] float at(const Aabb& box, float limit) const {
-        ++*asked;
-        return M::at(box, limit);
+    std::size_t* tests;
+    Counting(const M& measure, std::size_t& count) : M(measure), tests(&count) {}
+    [[nodiscard]] float distance(const Aabb& box, float limit) const {
+        ++*tests;
+        return M::distance(box, limit);
     }
 };
 
-/// How often a box was looked at; `hits` counts the searches that found something.
-template <class M> std::size_t asked_until_nearest(const UniformGrid& grid, const M& measure, int& hits) {
-    std::size_t asked = 0;
-    float nearest = beyond;
-    grid.nearest_first(Counting<M>(measure, asked), beyond, [&](Proxy, const Aabb&, float at) {
+/// Returns the number of box tests of a nearest search; `hits` counts the searches that hit a box.
+template <class M> std::size_t tests_until_nearest(const UniformGrid& grid, const M& measure, int& hits) {
+    std::size_t tests = 0;
+    float nearest = infinite_distance;
+    grid.nearest_first(Counting<M>(measure, tests), infinite_distance, [&](Proxy, const Aabb&, float at) {
         nearest = std::min(nearest, at);
         return nearest;
     });
-    hits += nearest < beyond ? 1 : 0;
-    return asked;
+    hits += nearest < infinite_distance ? 1 : 0;
+    return tests;
 }
 
-TEST(UniformGrid, LeadsRaysAndPointsPastMostBoxes) {
+TEST(UniformGrid, TestsFewBoxesInRayAndPointQueries) {
     const std::vector<Move> boxes = random_boxes(50000, 100, 1, 6);
     const UniformGrid grid = filled(UniformGrid(UniformGrid::Settings{.cell = 2}), boxes);
     Random random(7);
@@ -124,15 +124,15 @@ TEST(UniformGrid, LeadsRaysAndPointsPastMostBoxes) {
     for (int i = 0; i < 50; ++i) {
         const Vec3 from = place(random, -90, 90), direction = normalized(place(random, -1, 1));
         const Ray ray{to_double(from), direction};
-        on_rays += asked_until_nearest(grid, RayMeasure(ray, {-1, -1, -1}, {1, 1, 1}), hits);
-        at_points += asked_until_nearest(grid, PointMeasure(to_double(from), Aabb::infinity), hits);
+        on_rays += tests_until_nearest(grid, RayMeasure(ray, {-1, -1, -1}, {1, 1, 1}), hits);
+        at_points += tests_until_nearest(grid, PointMeasure(to_double(from), Aabb::infinity), hits);
     }
     EXPECT_GT(hits, 80);
     EXPECT_LT(on_rays, 50 * 2000u);
     EXPECT_LT(at_points, 50 * 400u);
 }
 
-TEST(GridWalk, MeetsEveryCellThatTheRayComesThrough) {
+TEST(GridWalk, VisitsEveryCellOnARay) {
     Random random(8);
     GridFrame frame;
     frame.origin = {0.3, -0.7, 100};
@@ -150,27 +150,27 @@ TEST(GridWalk, MeetsEveryCellThatTheRayComesThrough) {
         for (int k = 0; k < 400; ++k) {
             const double along = std::min(double(ray.length), 0.25 * k);
             const Vec3d at = point_at(ray, along) + to_double(multiply(after, place(random, -1, 1)));
-            const CellPlace cell{frame.cell(at.x, 0), frame.cell(at.y, 1), frame.cell(at.z, 2)};
+            const CellCoord cell{frame.cell(at.x, 0), frame.cell(at.y, 1), frame.cell(at.z, 2)};
             if (!within.contains(cell)) continue;
-            bool met = false;
+            bool visited = false;
             for (std::int64_t s = 0; s < cells.count(); ++s) {
                 if (!cells.slice(s).contains(cell)) continue;
-                EXPECT_FALSE(cells.met_before({cell, cell}, s)) << "twice";
-                EXPECT_TRUE(cells.met_before({cell, cell}, s + 1));
+                EXPECT_FALSE(cells.visited_before({cell, cell}, s)) << "visited twice";
+                EXPECT_TRUE(cells.visited_before({cell, cell}, s + 1));
                 EXPECT_LE(cells.entry(s), along);
-                met = true;
+                visited = true;
             }
-            ASSERT_TRUE(met) << i << ", " << k;
+            ASSERT_TRUE(visited) << i << ", " << k;
         }
     }
 }
 
-TEST(GridWalk, GoesThroughEachCellOfAShellOnce) {
-    const CellPlace centre{2, -1, 5};
+TEST(GridWalk, VisitsEachCellOfAShellOnce) {
+    const CellCoord centre{2, -1, 5};
     const CellRange within{{-2, -3, 1}, {4, 6, 7}};
-    std::set<CellPlace> seen;
+    std::set<CellCoord> seen;
     for (std::int64_t radius = cells_between(centre, within); radius <= cells_to_end(centre, within); ++radius) {
-        for_each_cell_of_shell(centre, radius, within, [&](const CellPlace& at) {
+        for_each_cell_of_shell(centre, radius, within, [&](const CellCoord& at) {
             EXPECT_EQ(cells_between(centre, {at, at}), radius);
             EXPECT_TRUE(within.contains(at));
             EXPECT_TRUE(seen.insert(at).second);

@@ -1,4 +1,4 @@
-/// What the wide tree promises beyond what every structure does.
+/// Tests of the wide BVH beyond the conformance tests.
 #include "fase/broad/wide_bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -26,13 +26,14 @@ std::vector<Move> boxes_in(Random& random, std::size_t count, float side, Vec3 o
 }
 
 struct Hit {
-    float at = beyond;
-    Proxy proxy = 0xffffffff;
+    float at = infinite_distance;
+    Proxy proxy = no_index;
     friend auto operator<=>(const Hit&, const Hit&) = default;
 };
 
-/// All that is met, in order.
-template <class S, class M> std::vector<Hit> hits_of(const S& structure, const M& measure, float limit = beyond) {
+/// All hits, sorted.
+template <class S, class M>
+std::vector<Hit> hits_of(const S& structure, const M& measure, float limit = infinite_distance) {
     std::vector<Hit> hits;
     nearest_first(structure, measure, limit, [&](Proxy p, const Aabb&, float at) {
         hits.push_back({at, p});
@@ -43,7 +44,7 @@ template <class S, class M> std::vector<Hit> hits_of(const S& structure, const M
 }
 template <class S> Hit nearest_of(const S& structure, const RayMeasure& measure) {
     Hit nearest;
-    nearest_first(structure, measure, beyond, [&](Proxy p, const Aabb&, float at) {
+    nearest_first(structure, measure, infinite_distance, [&](Proxy p, const Aabb&, float at) {
         nearest = std::min(nearest, Hit{at, p});
         return nearest.at;
     });
@@ -56,7 +57,8 @@ template <class S> std::vector<Pair> pairs_of(const S& structure) {
     return pairs;
 }
 
-/// Rays at corners, edges and faces of boxes, along axes or not, of lengths that just reach: where roundings decide.
+/// Rays to corners, along edges and in the planes of faces, with lengths that just reach the box: cases decided by
+/// rounding.
 Ray ray_at_the_edge(Random& random, const std::vector<Move>& boxes) {
     const Aabb& aim = boxes[random.below(boxes.size())].box;
     const Aabb& from = boxes[random.below(boxes.size())].box;
@@ -72,12 +74,12 @@ Ray ray_at_the_edge(Random& random, const std::vector<Move>& boxes) {
     switch (random.below(4)) {
         case 0: ray.origin = target, ray.origin[axis] -= 7; break;           // along an edge
         case 1: ray.origin[axis] = target[axis]; break;                      // within a face's plane
-        case 2: ray.origin = ray.origin + Vec3d{1e-9, -1e-9, 3e-10}; break;  // no float
+        case 2: ray.origin = ray.origin + Vec3d{1e-9, -1e-9, 3e-10}; break;  // not representable in float
         default: target[axis] = (double(aim.lo[axis]) + double(aim.hi[axis])) / 2;
     }
-    const Vec3d way = target - ray.origin;
-    const double distance = length(way);
-    if (distance > 0) ray.direction = to_float(way * (1 / distance));
+    const Vec3d offset = target - ray.origin;
+    const double distance = length(offset);
+    if (distance > 0) ray.direction = to_float(offset * (1 / distance));
     if (random.below(2) == 0) ray.length = static_cast<float>(distance);
     if (random.below(8) == 0) ray.direction[axis] = random.below(2) == 0 ? -0.0f : 1e-39f;
     return ray;
@@ -85,62 +87,62 @@ Ray ray_at_the_edge(Random& random, const std::vector<Move>& boxes) {
 
 class WideBvhRays : public testing::TestWithParam<float> {};
 
-TEST_P(WideBvhRays, NeverMissWhatTheExactTestMeets) {
+TEST_P(WideBvhRays, HitEveryBoxThatTheExactTestHits) {
     Random random(1);
     const float offset = GetParam();
     const std::vector<Move> boxes = boxes_in(random, 300, 12, {offset, -offset, offset});
     WideBvh tree;
     tree.build(boxes);
-    const BruteForce judge = filled(BruteForce(), boxes);
-    std::size_t met = 0;
+    const BruteForce reference = filled(BruteForce(), boxes);
+    std::size_t hit_count = 0;
     for (int i = 0; i < 3000; ++i) {
         SCOPED_TRACE(i);
         const Ray ray = ray_at_the_edge(random, boxes);
         const RayMeasure bare(ray);
         const auto hits = hits_of(tree, bare);
-        met += hits.size();
-        ASSERT_EQ(hits, hits_of(judge, bare));
-        ASSERT_EQ(nearest_of(tree, bare), nearest_of(judge, bare));
+        hit_count += hits.size();
+        ASSERT_EQ(hits, hits_of(reference, bare));
+        ASSERT_EQ(nearest_of(tree, bare), nearest_of(reference, bare));
         const float limit = hits.empty() ? 1.0f : hits[hits.size() / 2].at;
-        ASSERT_EQ(hits_of(tree, bare, limit), hits_of(judge, bare, limit));
-        const RayMeasure thick(ray, {-0.1f, -0.7f, 0}, {0.3f, 0, 1e-6f});
-        ASSERT_EQ(hits_of(tree, thick), hits_of(judge, thick));
-        const PointMeasure point(ray.origin, i % 2 == 0 ? limit : beyond);
-        ASSERT_EQ(hits_of(tree, point), hits_of(judge, point));
+        ASSERT_EQ(hits_of(tree, bare, limit), hits_of(reference, bare, limit));
+        const RayMeasure swept(ray, {-0.1f, -0.7f, 0}, {0.3f, 0, 1e-6f});
+        ASSERT_EQ(hits_of(tree, swept), hits_of(reference, swept));
+        const PointMeasure point(ray.origin, i % 2 == 0 ? limit : infinite_distance);
+        ASSERT_EQ(hits_of(tree, point), hits_of(reference, point));
     }
-    EXPECT_GT(met, 3000u);
+    EXPECT_GT(hit_count, 3000u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Offsets, WideBvhRays, testing::Values(0.0f, 1000.0f, 1e7f, 1e12f));
 
-TEST(WideBvh, AnswersRaysThatNoFloatCanHold) {
+TEST(WideBvh, HandlesRaysBeyondTheRangeOfFloat) {
     Random random(2);
     const std::vector<Move> boxes = boxes_in(random, 200, 12);
     WideBvh tree;
     tree.build(boxes);
-    const BruteForce judge = filled(BruteForce(), boxes);
+    const BruteForce reference = filled(BruteForce(), boxes);
     for (const double far : {1e19, 1e40, 1e300}) {
         for (int i = 0; i < 200; ++i) {
             Ray ray = ray_at_the_edge(random, boxes);
             ray.direction = {i % 2 == 0 ? 1.0f : -1.0f, 0, 0};
             ray.origin.x = -far;
-            ASSERT_EQ(hits_of(tree, RayMeasure(ray)), hits_of(judge, RayMeasure(ray)));
-            ASSERT_EQ(hits_of(tree, PointMeasure(ray.origin, beyond)),
-                      hits_of(judge, PointMeasure(ray.origin, beyond)));
+            ASSERT_EQ(hits_of(tree, RayMeasure(ray)), hits_of(reference, RayMeasure(ray)));
+            ASSERT_EQ(hits_of(tree, PointMeasure(ray.origin, infinite_distance)),
+                      hits_of(reference, PointMeasure(ray.origin, infinite_distance)));
         }
     }
 }
 
-TEST(WideBvh, GivesTheSameAnswersOnEveryInstructionSet) {
+TEST(WideBvh, GivesTheSameResultsOnEveryInstructionSet) {
     Random random(3);
     const std::vector<Move> boxes = boxes_in(random, 500, 10);
     const WideBvh tree = filled(WideBvh(), boxes);
     std::vector<Ray> rays;
     for (int i = 0; i < 200; ++i) rays.push_back(ray_at_the_edge(random, boxes));
-    const auto answers = [&] {
-        std::vector<Proxy> order;  // of the visits, too
+    const auto results = [&] {
+        std::vector<Proxy> order;  // also the order of the visits
         for (const Ray& ray : rays) {
-            tree.nearest_first(RayMeasure(ray), beyond, [&](Proxy p, const Aabb&, float at) {
+            tree.nearest_first(RayMeasure(ray), infinite_distance, [&](Proxy p, const Aabb&, float at) {
                 order.push_back(p);
                 return at + 1;
             });
@@ -155,13 +157,13 @@ TEST(WideBvh, GivesTheSameAnswersOnEveryInstructionSet) {
         for (const Pair pair : pairs) order.insert(order.end(), {pair.a, pair.b});
         return order;
     };
-    const std::vector<Proxy> expected = answers();
+    const std::vector<Proxy> expected = results();
     ASSERT_GT(expected.size(), 1000u);
     int sets = 0;
     for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1, ++sets) {
         hwy::SetSupportedTargetsForTest(left & -left);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        EXPECT_TRUE(answers() == expected) << hwy::TargetName(left & -left);
+        EXPECT_TRUE(results() == expected) << hwy::TargetName(left & -left);
         hwy::SetSupportedTargetsForTest(0);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     }
@@ -180,33 +182,33 @@ Frustum frustum_around(const Aabb& box) {
     return frustum;
 }
 
-TEST(WideBvh, HandsOverAllThatACameraSeesInOnePiece) {
+TEST(WideBvh, CullsAllVisibleBoxesInOneRange) {
     Random random(4);
     const std::vector<Move> boxes = boxes_in(random, 1000, 50);
     WideBvh tree;
     tree.build(boxes);
     const FrustumRegion region(frustum_around({{-9, -9, -9}, {99, 99, 99}}));
-    const auto pieces = [&] {
+    const auto range_sizes = [&] {
         std::vector<std::size_t> sizes;
-        tree.cull(region, [&](std::span<const Proxy> proxies, bool whole) {
-            EXPECT_TRUE(whole);
+        tree.cull(region, [&](std::span<const Proxy> proxies, bool inside) {
+            EXPECT_TRUE(inside);
             sizes.push_back(proxies.size());
         });
         return sizes;
     };
-    EXPECT_EQ(pieces(), std::vector<std::size_t>{1000});
+    EXPECT_EQ(range_sizes(), std::vector<std::size_t>{1000});
     tree.erase(17);
     tree.erase(440);
     tree.commit();
-    const std::vector<std::size_t> around_holes = pieces();
-    EXPECT_LE(around_holes.size(), 3u);
+    const std::vector<std::size_t> ranges = range_sizes();
+    EXPECT_LE(ranges.size(), 3u);
     std::size_t sum = 0;
-    for (const std::size_t size : around_holes) sum += size;
+    for (const std::size_t size : ranges) sum += size;
     EXPECT_EQ(sum, 998u);
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(WideBvh, TakesFacesOnAPlaneAsTheExactTestDoes) {
+TEST(WideBvh, ClassifiesFacesOnAPlaneAsTheExactTestDoes) {
     std::vector<Move> boxes;  // all faces are on planes of some frustum
     for (Proxy p = 0; p < 1000; ++p) {
         const Vec3 at{static_cast<float>(p % 10), static_cast<float>(p / 10 % 10), static_cast<float>(p / 100)};
@@ -214,28 +216,28 @@ TEST(WideBvh, TakesFacesOnAPlaneAsTheExactTestDoes) {
     }
     WideBvh tree;
     tree.build(boxes);
-    const BruteForce judge = filled(BruteForce(), boxes);
+    const BruteForce reference = filled(BruteForce(), boxes);
     const auto seen = [](const auto& structure, const FrustumRegion& region) {
         std::vector<std::pair<Proxy, bool>> all;
-        cull(structure, region, [&](std::span<const Proxy> proxies, bool whole) {
-            for (const Proxy p : proxies) all.emplace_back(p, whole);
+        cull(structure, region, [&](std::span<const Proxy> proxies, bool inside) {
+            for (const Proxy p : proxies) all.emplace_back(p, inside);
         });
         std::sort(all.begin(), all.end());
         return all;
     };
     Random random(5);
     for (int i = 0; i < 100; ++i) {
-        const auto whole = [&] { return static_cast<float>(random.below(11)); };
-        const Vec3 lo{whole(), whole(), whole()};
-        const FrustumRegion region(frustum_around({lo, lo + Vec3{whole(), whole(), whole()}}));
-        ASSERT_EQ(seen(tree, region), seen(judge, region)) << i;
+        const auto integer = [&] { return static_cast<float>(random.below(11)); };
+        const Vec3 lo{integer(), integer(), integer()};
+        const FrustumRegion region(frustum_around({lo, lo + Vec3{integer(), integer(), integer()}}));
+        ASSERT_EQ(seen(tree, region), seen(reference, region)) << i;
     }
 }
 
-TEST(WideBvh, StaysAsGoodAsNewWhileAllStirs) {
+TEST(WideBvh, KeepsALowCostWhileAllBoxesMove) {
     Random random(6);
     std::vector<Move> boxes = boxes_in(random, 3000, 40);
-    WideBvh tree(WideBvh::Settings{.filled = WideBvh::Build::Morton});
+    WideBvh tree(WideBvh::Settings{.build_method = WideBvh::Build::Morton});
     tree.build(boxes);
     double worst = 0;
     for (int frame = 0; frame < 60; ++frame) {
@@ -245,25 +247,25 @@ TEST(WideBvh, StaysAsGoodAsNewWhileAllStirs) {
             tree.move(m.proxy, m.box);
         }
         tree.commit();
-        WideBvh fresh(WideBvh::Settings{.filled = WideBvh::Build::Morton});
+        WideBvh fresh(WideBvh::Settings{.build_method = WideBvh::Build::Morton});
         fresh.build(boxes);
         worst = std::max(worst, tree.cost() / fresh.cost());
     }
-    EXPECT_GT(tree.times_built(), 2u);
-    EXPECT_LT(tree.times_built(), 60u);
-    EXPECT_LT(worst, 2.0);  // refitting alone makes it many times larger
+    EXPECT_GT(tree.build_count(), 2u);
+    EXPECT_LT(tree.build_count(), 60u);
+    EXPECT_LT(worst, 2.0);  // without rebuilds it becomes many times larger
     EXPECT_EQ(tree.broken_invariant(), "");
 
-    WideBvh never(WideBvh::Settings{.worst_growth = Aabb::infinity});
+    WideBvh never(WideBvh::Settings{.max_growth = Aabb::infinity});
     never.build(boxes_in(random, 3000, 40));
     for (const Move& m : boxes) never.move(m.proxy, m.box);
     never.commit();
-    EXPECT_EQ(never.times_built(), 1u);
-    EXPECT_GT(never.cost(), 3 * tree.cost()) << "the measure sees nothing";
+    EXPECT_EQ(never.build_count(), 1u);
+    EXPECT_GT(never.cost(), 3 * tree.cost()) << "cost() does not measure the degradation";
     EXPECT_EQ(pairs_of(never), pairs_of(tree));
 }
 
-TEST(WideBvh, IsNotBuiltAnewForOneThatFliesOff) {
+TEST(WideBvh, IsNotRebuiltForOneDistantBox) {
     Random random(7);
     std::vector<Move> boxes = boxes_in(random, 1000, 40);
     WideBvh tree;
@@ -274,38 +276,38 @@ TEST(WideBvh, IsNotBuiltAnewForOneThatFliesOff) {
         tree.move(5, box);
         tree.commit();
     }
-    EXPECT_EQ(tree.times_built(), 1u);
+    EXPECT_EQ(tree.build_count(), 1u);
     EXPECT_EQ(tree.broken_invariant(), "");
 }
 
-TEST(WideBvh, TakesInAFewNewcomersWithoutBuildingAllAnew) {
+TEST(WideBvh, InsertsAFewBoxesWithoutARebuild) {
     Random random(8);
     const std::vector<Move> boxes = boxes_in(random, 4000, 40);
     WideBvh tree;
     tree.build(std::span(boxes).first(3000));
-    BruteForce judge = filled(BruteForce(), {boxes.begin(), boxes.begin() + 3000});
+    BruteForce reference = filled(BruteForce(), {boxes.begin(), boxes.begin() + 3000});
     for (std::size_t i = 3000; i < boxes.size(); ++i) {
         tree.insert(boxes[i].proxy, boxes[i].box);
-        judge.insert(boxes[i].proxy, boxes[i].box);
+        reference.insert(boxes[i].proxy, boxes[i].box);
         if (i % 3 == 0) continue;
         if (i % 7 == 0) {
             tree.erase(boxes[i - 2].proxy);
-            judge.erase(boxes[i - 2].proxy);
+            reference.erase(boxes[i - 2].proxy);
         }
         tree.commit();
         ASSERT_EQ(tree.broken_invariant(), "") << i;
-        const BoxRegion around{grown(boxes[i].box, 2)};
+        const BoxRegion around{enlarged(boxes[i].box, 2)};
         std::size_t found = 0, expected = 0;
         tree.traverse(around, [&](Proxy, const Aabb&) { return ++found > 0; });
-        judge.traverse(around, [&](Proxy, const Aabb&) { return ++expected > 0; });
+        reference.traverse(around, [&](Proxy, const Aabb&) { return ++expected > 0; });
         ASSERT_EQ(found, expected);
     }
-    EXPECT_GT(tree.times_built(), 1u);
-    EXPECT_LT(tree.times_built(), 8u);
-    EXPECT_EQ(pairs_of(tree), pairs_of(judge));
+    EXPECT_GT(tree.build_count(), 1u);
+    EXPECT_LT(tree.build_count(), 8u);
+    EXPECT_EQ(pairs_of(tree), pairs_of(reference));
 }
 
-TEST(WideBvh, FindsTheSameHoweverItIsSet) {
+TEST(WideBvh, FindsTheSamePairsForAnySettings) {
     using Build = WideBvh::Build;
     for (const WideBvh::Settings& settings : {WideBvh::Settings{Build::Morton, Build::Area, 1.01f, 0},
                                               WideBvh::Settings{Build::Morton, Build::Morton, 4, 1},
@@ -313,37 +315,37 @@ TEST(WideBvh, FindsTheSameHoweverItIsSet) {
         Random random(9);
         std::vector<Move> boxes = boxes_in(random, 600, 14);
         WideBvh tree(settings);
-        BruteForce judge;
+        BruteForce reference;
         std::vector<std::uint8_t> stored(boxes.size(), 0);
         for (int step = 0; step < 60; ++step) {
             for (Move& m : boxes) {
                 const std::uint64_t chance = random.below(16);
                 if (stored[m.proxy] == 0 && chance < 4) {
                     tree.insert(m.proxy, m.box);
-                    judge.insert(m.proxy, m.box);
+                    reference.insert(m.proxy, m.box);
                     stored[m.proxy] = 1;
                 } else if (stored[m.proxy] != 0 && chance < 2) {
                     tree.erase(m.proxy);
-                    judge.erase(m.proxy);
+                    reference.erase(m.proxy);
                     stored[m.proxy] = 0;
                 } else if (stored[m.proxy] != 0 && chance < 8) {
                     const Vec3 by = place(random, -1, 1);
                     m.box = {m.box.lo + by, m.box.hi + by};
                     tree.move(m.proxy, m.box);
-                    judge.move(m.proxy, m.box);
+                    reference.move(m.proxy, m.box);
                 } else if (stored[m.proxy] != 0) {
                     tree.set_awake(m.proxy, chance % 2 == 0);
-                    judge.set_awake(m.proxy, chance % 2 == 0);
+                    reference.set_awake(m.proxy, chance % 2 == 0);
                 }
                 ASSERT_TRUE(step % 20 != 0 || m.proxy % 50 != 0 || tree.broken_invariant().empty());
             }
             tree.commit();
-            judge.commit();
+            reference.commit();
             ASSERT_EQ(tree.broken_invariant(), "") << step;
-            ASSERT_EQ(pairs_of(tree), pairs_of(judge)) << step;
+            ASSERT_EQ(pairs_of(tree), pairs_of(reference)) << step;
             std::vector<Pair> awake, expected;
             tree.find_awake_pairs(awake);
-            judge.find_awake_pairs(expected);
+            reference.find_awake_pairs(expected);
             std::sort(awake.begin(), awake.end());
             std::sort(expected.begin(), expected.end());
             ASSERT_EQ(awake, expected) << step;
@@ -351,7 +353,7 @@ TEST(WideBvh, FindsTheSameHoweverItIsSet) {
     }
 }
 
-TEST(WideBvh, ForgetsNothingThatIsErasedDownToTheLast) {
+TEST(WideBvh, ErasesBoxesDownToTheLast) {
     Random random(10);
     const std::vector<Move> boxes = boxes_in(random, 700, 20);
     WideBvh tree;
@@ -377,7 +379,7 @@ TEST(WideBvh, FillsItsNodes) {
     Random random(11);
     const std::vector<Move> boxes = boxes_in(random, 20000, 100);
     for (const WideBvh::Build how : {WideBvh::Build::Area, WideBvh::Build::Morton}) {
-        WideBvh tree(WideBvh::Settings{.filled = how});
+        WideBvh tree(WideBvh::Settings{.build_method = how});
         tree.build(boxes);
         EXPECT_LT(tree.nodes(), boxes.size() / 4) << "less than four boxes a node";
     }

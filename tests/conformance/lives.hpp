@@ -1,5 +1,5 @@
 #pragma once
-/// Random lives of boxes, led by a structure and by brute force at once.
+/// Random sequences of operations, applied both to a structure and to brute force as the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,77 +38,77 @@ inline std::vector<Proxy> sorted_overlapping(const AnyStructure& s, const Aabb& 
     return found;
 }
 
-/// The structure under test and the judge, living the same life.
-class Lives {
+/// The structure under test and the reference, with the same operations applied to both.
+class DifferentialRun {
 public:
-    Lives(std::string_view structure, const Scene& scene, std::uint64_t seed)
+    DifferentialRun(std::string_view structure, const Scene& scene, std::uint64_t seed)
         : tested(*AnyStructure::named(structure)),
-          judge(*AnyStructure::named("brute_force")),
+          reference(*AnyStructure::named("brute_force")),
           scene_(scene),
           random_(seed) {}
 
-    AnyStructure tested, judge;
-    std::vector<Proxy> alive;
+    AnyStructure tested, reference;
+    std::vector<Proxy> stored;
 
     void insert(std::size_t count) {
-        std::vector<Move> born;
+        std::vector<Move> added;
         for (std::size_t i = 0; i < count; ++i) {
             Proxy p;
-            if (dead_.empty()) {
+            if (free_proxies_.empty()) {
                 p = next_++;
             } else {
-                p = dead_.back();
-                dead_.pop_back();
+                p = free_proxies_.back();
+                free_proxies_.pop_back();
             }
-            born.push_back({p, scene_.draw(random_)});
-            alive.push_back(p);
+            added.push_back({p, scene_.draw(random_)});
+            stored.push_back(p);
         }
-        tested.insert(born);
-        judge.insert(born);
+        tested.insert(added);
+        reference.insert(added);
     }
-    /// Each box with the given chance in 16: a nudge, or (one time in four) a leap to a fresh place.
+    /// Moves each box with the given chance in 16: slightly, or (one time in four) to a new position.
     void move(std::uint64_t chance) {
         std::vector<Move> moved;
-        for (const Proxy p : alive) {
+        for (const Proxy p : stored) {
             if (random_.below(16) >= chance) continue;
             Aabb box = scene_.draw(random_);
             if (random_.below(4) != 0) box = nudged(p);
             moved.push_back({p, box});
         }
         tested.move(moved);
-        judge.move(moved);
+        reference.move(moved);
     }
     void erase(std::uint64_t chance) {
-        std::vector<Proxy> gone;
-        for (const Proxy p : alive)
-            if (random_.below(16) < chance) gone.push_back(p);
-        for (const Proxy p : gone) alive.erase(std::find(alive.begin(), alive.end(), p));
-        dead_.insert(dead_.end(), gone.begin(), gone.end());
-        tested.erase(gone);
-        judge.erase(gone);
+        std::vector<Proxy> erased;
+        for (const Proxy p : stored)
+            if (random_.below(16) < chance) erased.push_back(p);
+        for (const Proxy p : erased) stored.erase(std::find(stored.begin(), stored.end(), p));
+        free_proxies_.insert(free_proxies_.end(), erased.begin(), erased.end());
+        tested.erase(erased);
+        reference.erase(erased);
     }
-    /// Each box with the given chance in 16 falls asleep, or wakes.
+    /// Puts each box to sleep, or wakes it, with the given chance in 16.
     void change_awake(std::uint64_t chance) {
-        for (const Proxy p : alive) {
+        for (const Proxy p : stored) {
             if (random_.below(16) >= chance) continue;
             const bool awake = random_.below(3) == 0;
             tested.set_awake(std::span(&p, 1), awake);
-            judge.set_awake(std::span(&p, 1), awake);
+            reference.set_awake(std::span(&p, 1), awake);
         }
     }
     Aabb draw() { return scene_.draw(random_); }
     void commit() {
         tested.commit();
-        judge.commit();
+        reference.commit();
     }
     void expect_same() {
         ASSERT_EQ(tested.broken_invariant(), "");
-        ASSERT_EQ(judge.broken_invariant(), "");
-        ASSERT_EQ(tested.size(), alive.size());
-        ASSERT_EQ(all_pairs(tested), all_pairs(judge));
+        ASSERT_EQ(reference.broken_invariant(), "");
+        ASSERT_EQ(tested.size(), stored.size());
+        ASSERT_EQ(all_pairs(tested), all_pairs(reference));
         for (int i = 0; i < 4; ++i) {
             const Aabb box = scene_.draw(random_);
-            ASSERT_EQ(sorted_overlapping(tested, box), sorted_overlapping(judge, box));
+            ASSERT_EQ(sorted_overlapping(tested, box), sorted_overlapping(reference, box));
         }
     }
     Random& random() { return random_; }
@@ -117,11 +117,11 @@ private:
     Scene scene_;
     Random random_;
     Proxy next_ = 0;
-    std::vector<Proxy> dead_;
+    std::vector<Proxy> free_proxies_;
 
     Aabb nudged(Proxy p) {
         Aabb box;
-        judge.traverse(broad::Everything{}, [&](Proxy q, const Aabb& found) {
+        reference.traverse(broad::Everything{}, [&](Proxy q, const Aabb& found) {
             if (q == p) box = found;
             return q != p;
         });

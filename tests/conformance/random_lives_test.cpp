@@ -1,5 +1,5 @@
-/// Random lives of small sets of boxes, which shrink to the shortest that fails: every structure against loops over the
-/// boxes, in all that can be asked.
+/// Random sequences of operations on small sets of boxes: compares all queries of every structure with loops over the
+/// boxes. Rapidcheck shrinks a failing sequence to the shortest one.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -20,58 +20,58 @@ namespace {
 
 using query::Hit;
 
-/// One thing that happens. Which boxes it happens to, and how, follows from `share` and `seed`.
+/// One operation. `share` and `seed` select the affected boxes and the changes.
 struct Command {
     enum Kind { Insert, Leap, Nudge, Erase, Rest, Wake } kind = Insert;
-    std::uint32_t share = 1;  // of 16 boxes; of Insert: how many
+    std::uint32_t share = 1;  // of 16 boxes; for Insert: the count
     std::uint32_t seed = 0;
-    bool commits = true;  // afterwards, and everything is asked
+    bool commits = true;  // commit afterwards and check all queries
 };
 std::ostream& operator<<(std::ostream& out, const Command& c) {
     constexpr const char* names[]{"insert", "leap", "nudge", "erase", "rest", "wake"};
     return out << names[c.kind] << ' ' << c.share << " seed " << c.seed << (c.commits ? ", commit" : "");
 }
 
-struct Life {
-    std::vector<std::uint32_t> births;  // the seed of each box that is there from the start
+struct Sequence {
+    std::vector<std::uint32_t> initial_seeds;  // one seed per initial box
     std::vector<Command> commands;
 };
-std::ostream& operator<<(std::ostream& out, const Life& life) {
-    out << life.births.size() << " boxes of seeds";
-    for (const std::uint32_t seed : life.births) out << ' ' << seed;
-    for (const Command& c : life.commands) out << "; " << c;
+std::ostream& operator<<(std::ostream& out, const Sequence& run) {
+    out << run.initial_seeds.size() << " boxes of seeds";
+    for (const std::uint32_t seed : run.initial_seeds) out << ' ' << seed;
+    for (const Command& c : run.commands) out << "; " << c;
     return out;
 }
 
-rc::Gen<Life> any_life() {
+rc::Gen<Sequence> any_sequence() {
     const auto seed = rc::gen::resize(100, rc::gen::inRange<std::uint32_t>(0, 1u << 24));
     const auto kind =
         rc::gen::element(Command::Insert, Command::Leap, Command::Nudge, Command::Erase, Command::Rest, Command::Wake);
     const auto share = rc::gen::resize(100, rc::gen::inRange<std::uint32_t>(1, 17));
     const auto command = rc::gen::construct<Command>(kind, share, rc::gen::noShrink(seed), rc::gen::arbitrary<bool>());
-    return rc::gen::construct<Life>(
+    return rc::gen::construct<Sequence>(
         rc::gen::resize(60, rc::gen::container<std::vector<std::uint32_t>>(rc::gen::noShrink(seed))),
         rc::gen::resize(8, rc::gen::container<std::vector<Command>>(command)));
 }
 
-/// A structure, and beside it the boxes in a row, asked by loops.
-class Judged {
+/// A structure under test, with an array of the same boxes as the reference.
+class CheckedStructure {
 public:
-    Judged(const std::string& structure, const Scene& scene)
+    CheckedStructure(const std::string& structure, const Scene& scene)
         : tested_(*AnyStructure::named(structure)), scene_(scene) {}
 
-    void live(const Life& life) {
-        for (const std::uint32_t seed : life.births) insert(seed);
+    void run_sequence(const Sequence& run) {
+        for (const std::uint32_t seed : run.initial_seeds) insert(seed);
         tested_.commit();
-        ask_everything(1);
-        for (const Command& command : life.commands) {
-            obey(command);
+        check_everything(1);
+        for (const Command& command : run.commands) {
+            apply(command);
             if (!command.commits) continue;
             tested_.commit();
-            ask_everything(command.seed);
+            check_everything(command.seed);
         }
         tested_.commit();
-        ask_everything(2);
+        check_everything(2);
     }
 
 private:
@@ -90,17 +90,17 @@ private:
             free_.push_back(static_cast<Proxy>(boxes_.size()));
             boxes_.emplace_back();
         }
-        const Move born{free_.back(), scene_.draw(random)};
+        const Move added{free_.back(), scene_.draw(random)};
         free_.pop_back();
-        boxes_[born.proxy] = Stored{born.box, true};
-        tested_.insert(std::span(&born, 1));
+        boxes_[added.proxy] = Stored{added.box, true};
+        tested_.insert(std::span(&added, 1));
     }
     void move(Proxy p, const Aabb& box) {
         const Move moved{p, box};
         boxes_[p]->box = box;
         tested_.move(std::span(&moved, 1));
     }
-    void obey(const Command& command) {
+    void apply(const Command& command) {
         Random random(command.seed + 77);
         if (command.kind == Command::Insert) {
             for (std::uint32_t i = 0; i < command.share; ++i) insert(command.seed + i);
@@ -125,38 +125,38 @@ private:
         }
     }
 
-    static bool touch(const Aabb& a, const Aabb& b) {
+    static bool overlapping(const Aabb& a, const Aabb& b) {
         for (int axis = 0; axis < 3; ++axis)
             if (!(a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis])) return false;
         return true;
     }
-    template <class F> void each(F&& f) const {
+    template <class F> void for_each(F&& f) const {
         for (Proxy p = 0; p < boxes_.size(); ++p)
             if (boxes_[p]) f(p, *boxes_[p]);
     }
-    template <class Counts> std::vector<Proxy> those(Counts&& counts) const {
+    template <class Condition> std::vector<Proxy> proxies_where(Condition&& condition) const {
         std::vector<Proxy> found;
-        each([&](Proxy p, const Stored& stored) {
-            if (counts(stored.box)) found.push_back(p);
+        for_each([&](Proxy p, const Stored& stored) {
+            if (condition(stored.box)) found.push_back(p);
         });
         return found;
     }
 
-    void ask_everything(std::uint64_t seed) {
+    void check_everything(std::uint64_t seed) {
         RC_ASSERT(tested_.broken_invariant() == "");
         Random random(seed * 3 + 5);
-        ask_for_pairs();
-        ask_for_overlaps(random);
-        ask_on_a_ray(random);
-        ask_near_a_point(random);
-        ask_for_a_camera(random);
+        check_pairs();
+        check_overlaps(random);
+        check_rays(random);
+        check_nearest(random);
+        check_frustum(random);
     }
 
-    void ask_for_pairs() {
+    void check_pairs() {
         std::vector<Pair> all, awake;
-        each([&](Proxy p, const Stored& a) {
-            each([&](Proxy q, const Stored& b) {
-                if (p >= q || !touch(a.box, b.box)) return;
+        for_each([&](Proxy p, const Stored& a) {
+            for_each([&](Proxy q, const Stored& b) {
+                if (p >= q || !overlapping(a.box, b.box)) return;
                 all.push_back({p, q});
                 if (a.awake || b.awake) awake.push_back({p, q});
             });
@@ -165,62 +165,62 @@ private:
         RC_ASSERT(sorted_pairs([&](auto& out) { tested_.find_awake_pairs(out); }) == awake);
     }
 
-    template <class R> void ask_for(const R& region) {
+    template <class R> void check_region(const R& region) {
         std::vector<Proxy> found;
         query::overlapping(tested_, region, found);
-        RC_ASSERT(found == those([&](const Aabb& box) {
+        RC_ASSERT(found == proxies_where([&](const Aabb& box) {
                       if constexpr (query::TwoStepRegion<R>) {
-                          return region.touches(box) && region.meets(box);
+                          return region.touches(box) && region.touches_exactly(box);
                       } else {
                           return region.touches(box);
                       }
                   }));
     }
-    void ask_for_overlaps(Random& random) {
-        const Aabb asked = scene_.draw(random);
+    void check_overlaps(Random& random) {
+        const Aabb query_box = scene_.draw(random);
         std::vector<Proxy> found;
-        query::overlapping(tested_, asked, found);
-        RC_ASSERT(found == those([&](const Aabb& box) { return touch(box, asked); }));
-        const Vec3d a = place(random), b = place(random);
+        query::overlapping(tested_, query_box, found);
+        RC_ASSERT(found == proxies_where([&](const Aabb& box) { return overlapping(box, query_box); }));
+        const Vec3d a = random_point(random), b = random_point(random);
         const float radius = std::ldexp(1.0f, static_cast<int>(random.below(8)) - 4);
-        ask_for(query::SphereRegion(a, radius));
-        ask_for(query::CapsuleRegion(a, b, radius));
-        ask_for(query::PointRegion(a));
+        check_region(query::SphereRegion(a, radius));
+        check_region(query::CapsuleRegion(a, b, radius));
+        check_region(query::PointRegion(a));
     }
 
-    template <class Question, class M> void ask_along(const Question& question, const M& measure, float length) {
+    template <class Query, class M> void check_hits(const Query& request, const M& measure, float length) {
         std::vector<Hit> all, found;
-        each([&](Proxy p, const Stored& stored) {
-            const float at = measure.at(stored.box, length);
-            if (at < broad::beyond) all.push_back({at, p});
+        for_each([&](Proxy p, const Stored& stored) {
+            const float at = measure.distance(stored.box, length);
+            if (at < broad::infinite_distance) all.push_back({at, p});
         });
         std::sort(all.begin(), all.end());
-        query::all_hits(tested_, question, found);
+        query::all_hits(tested_, request, found);
         RC_ASSERT(found == all);
-        RC_ASSERT(query::any_hit(tested_, question) == !all.empty());
-        const auto nearest = query::nearest_hit(tested_, question);
+        RC_ASSERT(query::any_hit(tested_, request) == !all.empty());
+        const auto nearest = query::nearest_hit(tested_, request);
         RC_ASSERT(nearest.value_or(Hit{}) == (all.empty() ? Hit{} : all.front()));
     }
-    void ask_on_a_ray(Random& random) {
-        Ray ray{place(random), {0, 0, 1}, 4};
+    void check_rays(Random& random) {
+        Ray ray{random_point(random), {0, 0, 1}, 4};
         if (random.below(3) != 0) {
-            const Vec3d way = place(random) - ray.origin;
-            if (length(way) > 0) ray.direction = to_float(way * (1 / length(way)));
-            ray.length = random.below(2) == 0 ? Aabb::infinity : static_cast<float>(length(way));
+            const Vec3d offset = random_point(random) - ray.origin;
+            if (length(offset) > 0) ray.direction = to_float(offset * (1 / length(offset)));
+            ray.length = random.below(2) == 0 ? Aabb::infinity : static_cast<float>(length(offset));
         }
-        ask_along(ray, broad::RayMeasure(ray), ray.length);
-        const query::SweptBox carried{ray, {-0.5f, -1, 0}, {0.25f, 0, 1}};
-        ask_along(carried, broad::RayMeasure(ray, carried.before, carried.after), ray.length);
+        check_hits(ray, broad::RayMeasure(ray), ray.length);
+        const query::SweptBox swept{ray, {-0.5f, -1, 0}, {0.25f, 0, 1}};
+        check_hits(swept, broad::RayMeasure(ray, swept.lo, swept.hi), ray.length);
     }
 
-    void ask_near_a_point(Random& random) {
-        const Vec3d point = place(random);
+    void check_nearest(Random& random) {
+        const Vec3d point = random_point(random);
         const float radius = random.below(2) == 0 ? Aabb::infinity : 3;
         const broad::PointMeasure measure(point, radius);
         std::vector<Hit> all, found;
-        each([&](Proxy p, const Stored& stored) {
-            const float at = measure.at(stored.box, radius);
-            if (at < broad::beyond) all.push_back({at, p});
+        for_each([&](Proxy p, const Stored& stored) {
+            const float at = measure.distance(stored.box, radius);
+            if (at < broad::infinite_distance) all.push_back({at, p});
         });
         std::sort(all.begin(), all.end());
         const std::size_t k = random.below(9);
@@ -229,9 +229,9 @@ private:
         RC_ASSERT(found == all);
     }
 
-    /// What a camera sees that stands anywhere and looks anywhere.
-    Frustum camera(Random& random) {
-        const Vec3d eye = place(random);
+    /// A frustum at a random position with a random direction.
+    Frustum random_frustum(Random& random) {
+        const Vec3d eye = random_point(random);
         const Vec3d ahead = normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), random.between(0.1f, 1)});
         const Vec3d right = any_perpendicular(ahead), up = cross(right, ahead);
         const double slope = random.between(0.2f, 2), reach = std::ldexp(1.0, static_cast<int>(random.below(10)) - 2);
@@ -248,36 +248,38 @@ private:
         if (random.below(8) == 0) frustum.sides[5] = {Vec3d{}, 1};
         return frustum;
     }
-    void ask_for_a_camera(Random& random) {
-        const Frustum frustum = camera(random);
+    void check_frustum(Random& random) {
+        const Frustum frustum = random_frustum(random);
         const broad::FrustumRegion region(frustum);
         std::vector<Proxy> inside, partly;
         query::cull(tested_, frustum, inside, &partly);
         std::sort(inside.begin(), inside.end());
         std::sort(partly.begin(), partly.end());
-        RC_ASSERT(inside == those([&](const Aabb& box) { return region.touches(box); }));
-        RC_ASSERT(partly == those([&](const Aabb& box) { return region.touches(box) && !region.contains(box); }));
+        RC_ASSERT(inside == proxies_where([&](const Aabb& box) { return region.touches(box); }));
+        RC_ASSERT(partly ==
+                  proxies_where([&](const Aabb& box) { return region.touches(box) && !region.contains(box); }));
     }
 
-    /// A corner of some box as the scene draws them.
-    Vec3d place(Random& random) {
+    /// A corner of a random box of the scene.
+    Vec3d random_point(Random& random) {
         const auto finite = [](float x) { return std::isfinite(x) && std::abs(x) < 1e18f ? x : 3.0f; };
         const Aabb box = scene_.draw(random);
         return {finite(box.lo.x), finite(box.hi.y), finite(box.lo.z)};
     }
 };
 
-class EveryLife : public ::testing::TestWithParam<std::tuple<std::string, Scene>> {};
+class EverySequence : public ::testing::TestWithParam<std::tuple<std::string, Scene>> {};
 
-TEST_P(EveryLife, IsToldAsTheBoxesTellIt) {
+TEST_P(EverySequence, GivesTheResultsOfTheReference) {
     const auto& [structure, scene] = GetParam();
-    EXPECT_TRUE(rc::check(structure + " on " + scene.name, [&] { Judged(structure, scene).live(*any_life()); }));
+    EXPECT_TRUE(rc::check(structure + " on " + scene.name,
+                          [&] { CheckedStructure(structure, scene).run_sequence(*any_sequence()); }));
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, EveryLife,
+INSTANTIATE_TEST_SUITE_P(Registry, EverySequence,
                          ::testing::Combine(::testing::ValuesIn(structure_names()), ::testing::ValuesIn(all_scenes())),
-                         [](const ::testing::TestParamInfo<EveryLife::ParamType>& life) {
-                             return std::get<0>(life.param) + "_on_" + std::get<1>(life.param).name;
+                         [](const ::testing::TestParamInfo<EverySequence::ParamType>& run) {
+                             return std::get<0>(run.param) + "_on_" + std::get<1>(run.param).name;
                          });
 
 }  // namespace

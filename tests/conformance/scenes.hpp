@@ -1,5 +1,5 @@
 #pragma once
-/// Kinds of box sets that have broken broad phases before; each a rule for drawing one more box.
+/// Kinds of box sets that are hard for broad phases; each is a function that draws one random box.
 #include <cmath>
 #include <vector>
 
@@ -23,10 +23,10 @@ inline Aabb draw_uniform(Random& random) {
     const Vec3 at = point_in(random, 0, 12);
     return box_around(at, point_in(random, 0.1f, 1));
 }
-/// Unit cubes on whole numbers: all contacts are ties.
+/// Unit cubes on an integer lattice: all contacts are exact touches.
 inline Aabb draw_lattice(Random& random) {
-    const auto whole = [&] { return static_cast<float>(random.below(6)); };
-    const float x = whole(), y = whole(), z = whole();
+    const auto integer = [&] { return static_cast<float>(random.below(6)); };
+    const float x = integer(), y = integer(), z = integer();
     return {{x, y, z}, {x + 1, y + 1, z + 1}};
 }
 inline Aabb draw_coincident(Random&) { return {{1, 2, 3}, {2, 3, 4}}; }
@@ -50,12 +50,12 @@ inline Aabb draw_million_to_one(Random& random) {
     const Vec3 at = point_in(random, -20, 20);
     return box_around(at, Vec3{size, size, size} * 0.5f);
 }
-/// At 10,000 km a float counts whole metres.
+/// At 10,000 km the spacing of floats is one metre.
 inline Aabb draw_far(Random& random) {
     const Vec3 at = point_in(random, 0, 12);
     return box_around(Vec3{1e7f, -1e7f, 1e7f} + at, point_in(random, 0, 1));
 }
-/// One in four is infinite on some sides, as the box of a half-space is; some are infinite on all.
+/// One in four is infinite on some sides, like the box of a half-space; some are infinite on all sides.
 inline Aabb draw_half_spaces(Random& random) {
     Aabb box = draw_uniform(random);
     if (random.below(4) != 0) return box;
@@ -75,12 +75,12 @@ inline Aabb draw_geometric(Random& random) {
     const float size = std::ldexp(1.0f, static_cast<int>(random.below(120)) - 60);
     return {{size, 0, 0}, {size * 2, size, size}};
 }
-/// Points, all on one line, some in the same place.
+/// Points on one line, some coincident.
 inline Aabb draw_points_on_a_line(Random& random) {
     const auto x = static_cast<float>(random.below(64));
     return {{x, 0, 0}, {x, 0, 0}};
 }
-/// Nothing a caller should store; a structure must survive it and treat it as brute force does.
+/// Invalid boxes; a structure must accept them and treat them as brute force does.
 inline Aabb draw_broken(Random& random) {
     Aabb box = draw_uniform(random);
     const float nan = std::nanf("");
@@ -94,7 +94,7 @@ inline Aabb draw_broken(Random& random) {
         default: return box;
     }
 }
-/// Coordinates up to 1e17 and areas up to 1e35 beside boxes of a metre.
+/// Coordinates up to 1e17 and areas up to 1e35, together with boxes of a metre.
 inline Aabb draw_astronomic(Random& random) {
     if (random.below(3) != 0) return draw_uniform(random);
     const Vec3 at = point_in(random, -5e16f, 5e16f);

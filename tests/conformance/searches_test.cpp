@@ -1,5 +1,5 @@
-/// Every structure of the registry against brute force in what it offers beyond pairs: boxes that rest, leaves, near
-/// boxes first, whole branches in a region.
+/// Compares every structure of the registry with brute force: awake pairs, leaves, bulk builds, nearest-first searches
+/// and culling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,17 +13,17 @@ namespace {
 
 class EverySearch : public ::testing::TestWithParam<std::tuple<std::string, Scene>> {
 protected:
-    /// A life in which boxes have come, moved, gone, and rest.
-    Lives lived(std::uint64_t seed) const {
-        Lives life(std::get<0>(GetParam()), std::get<1>(GetParam()), seed);
-        life.insert(150);
-        life.commit();
-        life.move(8);
-        life.erase(3);
-        life.insert(30);
-        life.change_awake(10);
-        life.commit();
-        return life;
+    /// A run with inserted, moved, erased and sleeping boxes.
+    DifferentialRun populated_run(std::uint64_t seed) const {
+        DifferentialRun run(std::get<0>(GetParam()), std::get<1>(GetParam()), seed);
+        run.insert(150);
+        run.commit();
+        run.move(8);
+        run.erase(3);
+        run.insert(30);
+        run.change_awake(10);
+        run.commit();
+        return run;
     }
 };
 
@@ -31,30 +31,30 @@ std::vector<Pair> awake_pairs(const AnyStructure& s) {
     return sorted_pairs([&](auto& out) { s.find_awake_pairs(out); });
 }
 
-TEST_P(EverySearch, LeavesOutPairsOfBoxesThatRest) {
-    Lives life = lived(20);
+TEST_P(EverySearch, LeavesOutPairsOfSleepingBoxes) {
+    DifferentialRun run = populated_run(20);
     for (int step = 0; step < 12; ++step) {
         SCOPED_TRACE(step);
-        ASSERT_EQ(life.tested.broken_invariant(), "");
-        ASSERT_EQ(awake_pairs(life.tested), awake_pairs(life.judge));
-        ASSERT_EQ(all_pairs(life.tested), all_pairs(life.judge));
-        for (const Proxy p : life.alive) ASSERT_EQ(life.tested.is_awake(p), life.judge.is_awake(p));
-        if (step % 2 == 0) life.change_awake(4);
-        if (step % 3 == 1) life.move(2);
-        if (step % 4 == 2) life.erase(2);
-        if (step % 4 == 3) life.insert(9);  // awake, also where a sleeper was erased
-        life.commit();
+        ASSERT_EQ(run.tested.broken_invariant(), "");
+        ASSERT_EQ(awake_pairs(run.tested), awake_pairs(run.reference));
+        ASSERT_EQ(all_pairs(run.tested), all_pairs(run.reference));
+        for (const Proxy p : run.stored) ASSERT_EQ(run.tested.is_awake(p), run.reference.is_awake(p));
+        if (step % 2 == 0) run.change_awake(4);
+        if (step % 3 == 1) run.move(2);
+        if (step % 4 == 2) run.erase(2);
+        if (step % 4 == 3) run.insert(9);  // awake, also when they reuse the proxy of a sleeping box
+        run.commit();
     }
-    life.tested.set_awake(life.alive, false);
-    life.commit();
-    EXPECT_TRUE(awake_pairs(life.tested).empty());
+    run.tested.set_awake(run.stored, false);
+    run.commit();
+    EXPECT_TRUE(awake_pairs(run.tested).empty());
 }
 
-TEST_P(EverySearch, HoldsEachBoxInALeaf) {
-    const Lives life = lived(21);
+TEST_P(EverySearch, StoresEachBoxInALeaf) {
+    const DifferentialRun run = populated_run(21);
     std::map<Proxy, std::size_t> leaves_of;
     std::size_t leaves = 0, entries = 0;
-    life.tested.for_each_leaf([&](const broad::Leaf& leaf) {
+    run.tested.for_each_leaf([&](const broad::Leaf& leaf) {
         ++leaves;
         EXPECT_FALSE(leaf.proxies.empty());
         EXPECT_GE(leaf.depth, 0);
@@ -63,74 +63,75 @@ TEST_P(EverySearch, HoldsEachBoxInALeaf) {
     });
     std::vector<Proxy> seen;
     for (const auto& [p, count] : leaves_of) seen.push_back(p);
-    std::vector<Proxy> alive = life.alive;
-    std::sort(alive.begin(), alive.end());
-    EXPECT_EQ(seen, alive);
-    const broad::StructureStats stats = life.tested.stats();
-    EXPECT_EQ(stats.boxes, alive.size());
+    std::vector<Proxy> stored = run.stored;
+    std::sort(stored.begin(), stored.end());
+    EXPECT_EQ(seen, stored);
+    const broad::StructureStats stats = run.tested.stats();
+    EXPECT_EQ(stats.boxes, stored.size());
     EXPECT_EQ(stats.leaves, leaves);
     EXPECT_EQ(stats.entries, entries);
     EXPECT_GE(stats.nodes, stats.leaves == 0 ? 0u : 1u);
-    EXPECT_LE(static_cast<double>(stats.leaves), static_cast<double>(stats.nodes) + 1);  // odd boxes may stand apart
+    EXPECT_LE(static_cast<double>(stats.leaves),
+              static_cast<double>(stats.nodes) + 1);  // unbounded boxes may be in a separate leaf
     EXPECT_GT(stats.bytes, 0u);
 }
 
-TEST_P(EverySearch, FillsInOneGoAsItFillsOneByOne) {
-    Lives life = lived(22);
+TEST_P(EverySearch, GivesTheSameResultsAfterABulkBuild) {
+    DifferentialRun run = populated_run(22);
     std::vector<Move> boxes;
-    for (Proxy p = 0; p < 120; ++p) boxes.push_back({p * 3, life.draw()});
-    life.tested.build(boxes);
-    life.judge.build(boxes);
-    life.alive.clear();
-    for (const Move& m : boxes) life.alive.push_back(m.proxy);
-    ASSERT_NO_FATAL_FAILURE(life.expect_same());
-    EXPECT_EQ(awake_pairs(life.tested), awake_pairs(life.judge));
-    life.move(8);
-    life.commit();
-    ASSERT_NO_FATAL_FAILURE(life.expect_same());
-    life.tested.build({});
-    EXPECT_EQ(life.tested.size(), 0u);
-    EXPECT_EQ(life.tested.broken_invariant(), "");
+    for (Proxy p = 0; p < 120; ++p) boxes.push_back({p * 3, run.draw()});
+    run.tested.build(boxes);
+    run.reference.build(boxes);
+    run.stored.clear();
+    for (const Move& m : boxes) run.stored.push_back(m.proxy);
+    ASSERT_NO_FATAL_FAILURE(run.expect_same());
+    EXPECT_EQ(awake_pairs(run.tested), awake_pairs(run.reference));
+    run.move(8);
+    run.commit();
+    ASSERT_NO_FATAL_FAILURE(run.expect_same());
+    run.tested.build({});
+    EXPECT_EQ(run.tested.size(), 0u);
+    EXPECT_EQ(run.tested.broken_invariant(), "");
 }
 
 struct Hit {
-    float at = broad::beyond;
-    Proxy proxy = 0xffffffff;
+    float at = broad::infinite_distance;
+    Proxy proxy = no_index;
     friend auto operator<=>(const Hit&, const Hit&) = default;
 };
 
-/// The least hit, and all of them, in order.
+/// The nearest hit, and all hits sorted.
 template <broad::Measure M> std::pair<Hit, std::vector<Hit>> hits_of(const AnyStructure& s, const M& measure) {
     Hit nearest;
-    s.nearest_first(measure, broad::beyond, [&](Proxy p, const Aabb& box, float at) {
-        EXPECT_EQ(at, measure.at(box, broad::beyond));
+    s.nearest_first(measure, broad::infinite_distance, [&](Proxy p, const Aabb& box, float at) {
+        EXPECT_EQ(at, measure.distance(box, broad::infinite_distance));
         nearest = std::min(nearest, Hit{at, p});
         return nearest.at;
     });
     std::vector<Hit> all;
-    s.nearest_first(measure, broad::beyond, [&](Proxy p, const Aabb&, float at) {
+    s.nearest_first(measure, broad::infinite_distance, [&](Proxy p, const Aabb&, float at) {
         all.push_back({at, p});
-        return broad::beyond;
+        return broad::infinite_distance;
     });
     std::sort(all.begin(), all.end());
     return {nearest, all};
 }
 
-Ray random_ray(Lives& life) {
+Ray random_ray(DifferentialRun& run) {
     const auto finite = [](float x) { return std::isfinite(x) && std::abs(x) < 1e18f ? x : 3.0f; };
-    const Aabb from = life.draw(), to = life.draw();
+    const Aabb from = run.draw(), to = run.draw();
     Ray ray;
     ray.origin = {finite(from.lo.x), finite(from.hi.y), finite(from.lo.z)};
     const Vec3d target{finite(to.hi.x), finite(to.lo.y), finite(to.lo.z)};
-    const Vec3d way = target - ray.origin;
-    const double distance = length(way);
-    switch (life.random().below(4)) {
+    const Vec3d offset = target - ray.origin;
+    const double distance = length(offset);
+    switch (run.random().below(4)) {
         case 0: ray.direction = {1, 0, 0}; break;
         case 1: ray.direction = {0, 0, -1}; break;
         default:
-            if (distance > 0) ray.direction = to_float(way * (1 / distance));
+            if (distance > 0) ray.direction = to_float(offset * (1 / distance));
     }
-    switch (life.random().below(4)) {
+    switch (run.random().below(4)) {
         case 0: ray.length = static_cast<float>(distance); break;
         case 1: ray.length = 0; break;
         case 2: ray.length = 5; break;
@@ -139,46 +140,47 @@ Ray random_ray(Lives& life) {
     return ray;
 }
 
-TEST_P(EverySearch, MeetsTheSameBoxesOnARay) {
-    Lives life = lived(23);
+TEST_P(EverySearch, HitsTheSameBoxesWithARay) {
+    DifferentialRun run = populated_run(23);
     for (int i = 0; i < 60; ++i) {
         SCOPED_TRACE(i);
-        const Ray ray = random_ray(life);
-        ASSERT_EQ(hits_of(life.tested, broad::RayMeasure(ray)), hits_of(life.judge, broad::RayMeasure(ray)));
-        const broad::RayMeasure thick(ray, {-0.5f, -0.25f, 0}, {0.5f, 1, 0.125f});
-        ASSERT_EQ(hits_of(life.tested, thick), hits_of(life.judge, thick));
+        const Ray ray = random_ray(run);
+        ASSERT_EQ(hits_of(run.tested, broad::RayMeasure(ray)), hits_of(run.reference, broad::RayMeasure(ray)));
+        const broad::RayMeasure swept(ray, {-0.5f, -0.25f, 0}, {0.5f, 1, 0.125f});
+        ASSERT_EQ(hits_of(run.tested, swept), hits_of(run.reference, swept));
     }
 }
 
-TEST_P(EverySearch, IsAsNearToAPoint) {
-    Lives life = lived(24);
+TEST_P(EverySearch, FindsTheSameBoxesNearAPoint) {
+    DifferentialRun run = populated_run(24);
     for (int i = 0; i < 40; ++i) {
         SCOPED_TRACE(i);
-        const Vec3d point = random_ray(life).origin;
+        const Vec3d point = random_ray(run).origin;
         const float radius = i % 4 == 0 ? 0 : i % 4 == 1 ? 2.5f : i % 4 == 2 ? 100 : Aabb::infinity;
         const broad::PointMeasure measure(point, radius);
-        ASSERT_EQ(hits_of(life.tested, measure), hits_of(life.judge, measure));
+        ASSERT_EQ(hits_of(run.tested, measure), hits_of(run.reference, measure));
     }
 }
 
-TEST_P(EverySearch, StopsWhenALimitBelowZeroSaysSo) {
-    Lives life = lived(25);
+TEST_P(EverySearch, StopsAtALimitBelowZero) {
+    DifferentialRun run = populated_run(25);
     for (int i = 0; i < 10; ++i) {
         int visited = 0;
-        life.tested.nearest_first(broad::PointMeasure({1, 2, 3}, Aabb::infinity), broad::beyond,
-                                  [&](Proxy, const Aabb&, float) { return ++visited > i ? -1.0f : broad::beyond; });
+        run.tested.nearest_first(
+            broad::PointMeasure({1, 2, 3}, Aabb::infinity), broad::infinite_distance,
+            [&](Proxy, const Aabb&, float) { return ++visited > i ? -1.0f : broad::infinite_distance; });
         EXPECT_LE(visited, i + 1);
     }
 }
 
-/// What a camera at `eye` that looks along one axis sees; some are wide, some narrow, some short.
-Frustum random_frustum(Lives& life) {
-    const Vec3d eye = random_ray(life).origin;
-    const double scale = std::pow(10.0, static_cast<double>(life.random().between(-1, 3)));
-    const double slope = static_cast<double>(life.random().between(0.1f, 2));
-    const int axis = static_cast<int>(life.random().below(3));
+/// A frustum along one axis from a random position; wide, narrow or short.
+Frustum random_frustum(DifferentialRun& run) {
+    const Vec3d eye = random_ray(run).origin;
+    const double scale = std::pow(10.0, static_cast<double>(run.random().between(-1, 3)));
+    const double slope = static_cast<double>(run.random().between(0.1f, 2));
+    const int axis = static_cast<int>(run.random().below(3));
     Vec3d ahead, right, up;
-    ahead[axis] = life.random().below(2) == 0 ? 1 : -1;
+    ahead[axis] = run.random().below(2) == 0 ? 1 : -1;
     right[(axis + 1) % 3] = 1;
     up[(axis + 2) % 3] = 1;
     Frustum frustum;
@@ -192,46 +194,46 @@ Frustum random_frustum(Lives& life) {
     frustum.sides[3] = side(up - ahead * slope, eye);
     frustum.sides[4] = side(ahead * -1, eye + ahead * (scale * 0.01));
     frustum.sides[5] = side(ahead, eye + ahead * scale);
-    if (life.random().below(8) == 0) frustum.sides[5] = {Vec3d{}, 1};
+    if (run.random().below(8) == 0) frustum.sides[5] = {Vec3d{}, 1};
     return frustum;
 }
 
 std::pair<std::vector<Proxy>, std::vector<Proxy>> seen_by(const AnyStructure& s, const broad::FrustumRegion& region) {
-    std::vector<Proxy> whole, partly;
+    std::vector<Proxy> completely, partly;
     s.cull(region, [&](std::span<const Proxy> proxies, bool inside) {
-        std::vector<Proxy>& out = inside ? whole : partly;
+        std::vector<Proxy>& out = inside ? completely : partly;
         out.insert(out.end(), proxies.begin(), proxies.end());
     });
-    std::sort(whole.begin(), whole.end());
+    std::sort(completely.begin(), completely.end());
     std::sort(partly.begin(), partly.end());
-    return {whole, partly};
+    return {completely, partly};
 }
 
-TEST_P(EverySearch, TakesAndLeavesTheSameForACamera) {
-    Lives life = lived(26);
-    std::size_t whole = 0;
+TEST_P(EverySearch, CullsTheSameBoxes) {
+    DifferentialRun run = populated_run(26);
+    std::size_t inside_count = 0;
     for (int i = 0; i < 60; ++i) {
         SCOPED_TRACE(i);
-        const broad::FrustumRegion region(random_frustum(life));
-        const auto seen = seen_by(life.tested, region);
-        ASSERT_EQ(seen, seen_by(life.judge, region));
-        whole += seen.first.size();
+        const broad::FrustumRegion region(random_frustum(run));
+        const auto seen = seen_by(run.tested, region);
+        ASSERT_EQ(seen, seen_by(run.reference, region));
+        inside_count += seen.first.size();
         std::vector<Proxy> touching;
-        life.tested.traverse(region, [&](Proxy p, const Aabb&) {
+        run.tested.traverse(region, [&](Proxy p, const Aabb&) {
             touching.push_back(p);
             return true;
         });
         ASSERT_EQ(touching.size(), seen.first.size() + seen.second.size());
     }
     if (std::get<1>(GetParam()).name == std::string("uniform")) {
-        EXPECT_GT(whole, 0u) << "the test sees nothing";
+        EXPECT_GT(inside_count, 0u) << "no box is inside a frustum";
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EverySearch,
                          ::testing::Combine(::testing::ValuesIn(structure_names()), ::testing::ValuesIn(all_scenes())),
-                         [](const ::testing::TestParamInfo<EverySearch::ParamType>& life) {
-                             return std::get<0>(life.param) + "_on_" + std::get<1>(life.param).name;
+                         [](const ::testing::TestParamInfo<EverySearch::ParamType>& run) {
+                             return std::get<0>(run.param) + "_on_" + std::get<1>(run.param).name;
                          });
 
 }  // namespace

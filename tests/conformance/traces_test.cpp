@@ -1,4 +1,4 @@
-/// Every structure on the boxes of real, deformed meshes: swept triangles and edges of cloth and armadillos.
+/// Checks every structure on boxes of real, deforming meshes: swept triangles and edges of cloth and armadillos.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ using broad::Move;
 using broad::Pair;
 using broad::Proxy;
 
-/// The first frame of a trace: "AABT", version, boxes, frames (u32 each), a flag byte a box padded to 4, then six
-/// floats a box.
+/// Reads the first frame of a trace: "AABT", version, boxes, frames (u32 each), one flag byte per box padded to 4, then
+/// six floats per box.
 std::vector<Move> first_frame(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     char magic[4];
@@ -36,10 +36,10 @@ std::vector<Move> first_frame(const std::filesystem::path& path) {
     return file ? boxes : std::vector<Move>{};
 }
 
-/// Every n-th box, so that at most about `most` are left.
-std::vector<Move> thinned(const std::vector<Move>& boxes, std::size_t most) {
+/// Returns every n-th box, so that about `max_count` remain.
+std::vector<Move> thinned(const std::vector<Move>& boxes, std::size_t max_count) {
     std::vector<Move> kept;
-    const std::size_t stride = boxes.size() / most + 1;
+    const std::size_t stride = boxes.size() / max_count + 1;
     for (std::size_t i = 0; i < boxes.size(); i += stride) kept.push_back(boxes[i]);
     return kept;
 }
@@ -61,7 +61,8 @@ TEST_P(Traces, GiveTheSamePairsInEveryStructure) {
     const std::vector<Pair> expected = pairs_by_sweep(boxes);
     RecordProperty("pairs", std::to_string(expected.size()));
     broad::for_each_structure([&]<broad::Structure S>() {
-        if (S::info.name == "brute_force") return;  // too slow here; it is held against the sweep on a part below
+        if (S::info.name == "brute_force")
+            return;  // too slow here; the test below compares it with the sweep on a part
         AnyStructure s = *AnyStructure::named(S::info.name);
         s.insert(boxes);
         s.commit();
@@ -69,7 +70,8 @@ TEST_P(Traces, GiveTheSamePairsInEveryStructure) {
         s.find_pairs(pairs);
         std::sort(pairs.begin(), pairs.end());
         EXPECT_EQ(s.broken_invariant(), "");
-        EXPECT_TRUE(pairs == expected) << S::info.name << ": " << pairs.size() << " pairs, need " << expected.size();
+        EXPECT_TRUE(pairs == expected) << S::info.name << ": " << pairs.size() << " pairs, expected "
+                                       << expected.size();
     });
 }
 
@@ -77,10 +79,10 @@ TEST_P(Traces, GiveTheSamePairsToBruteForceAndTheSweepOnAPart) {
     const auto path = std::filesystem::path(FASE_SHARED_DATA) / "traces" / (std::string(GetParam()) + ".aabt");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: " << path << " is missing";
     const std::vector<Move> part = thinned(first_frame(path), 6000);
-    AnyStructure judge = *AnyStructure::named("brute_force");
-    judge.insert(part);
+    AnyStructure reference = *AnyStructure::named("brute_force");
+    reference.insert(part);
     std::vector<Pair> pairs;
-    judge.find_pairs(pairs);
+    reference.find_pairs(pairs);
     std::sort(pairs.begin(), pairs.end());
     EXPECT_TRUE(pairs == pairs_by_sweep(part));
     EXPECT_FALSE(pairs.empty());

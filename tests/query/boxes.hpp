@@ -1,5 +1,5 @@
 #pragma once
-/// Boxes that rapidcheck makes up and shrinks, and every structure filled with them.
+/// Generators of boxes and rays for rapidcheck, and structures filled with such boxes.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -25,7 +25,7 @@ using broad::AnyStructure;
 using broad::Move;
 using broad::Proxy;
 
-/// A number of quarters of a metre, from -range to range.
+/// A multiple of 0.25 m from -range to range.
 inline rc::Gen<float> quarters(int range) {
     return rc::gen::map(rc::gen::resize(100, rc::gen::inRange(-4 * range, 4 * range + 1)),
                         [](int quarter) { return 0.25f * static_cast<float>(quarter); });
@@ -33,7 +33,7 @@ inline rc::Gen<float> quarters(int range) {
 inline rc::Gen<Vec3> any_point(int range = 6) {
     return rc::gen::construct<Vec3>(quarters(range), quarters(range), quarters(range));
 }
-/// Boxes on a grid of quarters, so that faces meet; one in some is flat.
+/// A box on a grid of 0.25 m, so that faces often touch; some boxes are flat.
 inline rc::Gen<Aabb> any_box() {
     return rc::gen::map(rc::gen::pair(any_point(), any_point(1)), [](const std::pair<Vec3, Vec3>& corner_and_size) {
         const Vec3 half = abs(corner_and_size.second);
@@ -44,7 +44,7 @@ inline rc::Gen<std::vector<Aabb>> any_boxes() {
     return rc::gen::resize(40, rc::gen::container<std::vector<Aabb>>(any_box()));
 }
 
-/// Box i under proxy i; half of them come first, all are moved once, one more comes and goes.
+/// Returns a structure with box i as proxy i, after several inserts, moves, an erase and commits.
 inline AnyStructure filled(const std::string& name, const std::vector<Aabb>& boxes) {
     AnyStructure structure = *AnyStructure::named(name);
     std::vector<Move> moves;
@@ -55,11 +55,11 @@ inline AnyStructure filled(const std::string& name, const std::vector<Aabb>& box
     structure.insert(std::span(elsewhere).first(half));
     structure.commit();
     structure.insert(std::span(elsewhere).subspan(half));
-    const Move passing{static_cast<Proxy>(boxes.size() + 3), {{0, 0, 0}, {1, 1, 1}}};
-    structure.insert(std::span(&passing, 1));
+    const Move temporary{static_cast<Proxy>(boxes.size() + 3), {{0, 0, 0}, {1, 1, 1}}};
+    structure.insert(std::span(&temporary, 1));
     structure.commit();
     structure.move(moves);
-    structure.erase(std::span(&passing.proxy, 1));
+    structure.erase(std::span(&temporary.proxy, 1));
     structure.commit();
     return structure;
 }
@@ -72,15 +72,15 @@ inline std::vector<std::string> structure_names() {
 class EveryStructure : public ::testing::TestWithParam<std::string> {};
 inline std::string name_of(const ::testing::TestParamInfo<std::string>& structure) { return structure.param; }
 
-/// The proxies whose box counts, ascending.
-template <class Counts> std::vector<Proxy> those(const std::vector<Aabb>& boxes, Counts&& counts) {
+/// Returns the proxies of the boxes for which `matches(box)` holds, ascending.
+template <class Matches> std::vector<Proxy> proxies_where(const std::vector<Aabb>& boxes, Matches&& matches) {
     std::vector<Proxy> found;
     for (Proxy p = 0; p < boxes.size(); ++p)
-        if (counts(boxes[p])) found.push_back(p);
+        if (matches(boxes[p])) found.push_back(p);
     return found;
 }
 
-/// Metres along a ray to where it enters and leaves a box, in long double: enter > leave when it passes by.
+/// Metres along a ray to where it enters and leaves a box, in long double; enter > leave when it misses.
 struct Passage {
     long double enter = 0, leave = 0;
 };
@@ -99,14 +99,15 @@ inline Passage passage(const Ray& ray, const Aabb& box) {
     return passage;
 }
 
-/// Along an axis, a diagonal of a face or of space, or anywhere.
+/// A ray along an axis, along a diagonal, or in any direction.
 inline rc::Gen<Ray> any_ray() {
     const auto length = rc::gen::element(0.0f, 1.5f, 4.0f, 100.0f, Aabb::infinity);
     return rc::gen::map(rc::gen::tuple(any_point(10), any_point(2), length),
-                        [](const std::tuple<Vec3, Vec3, float>& from_way_length) {
-                            Vec3 way = normalized(std::get<1>(from_way_length));
-                            if (way == Vec3{}) way = {0, 1, 0};
-                            return Ray{to_double(std::get<0>(from_way_length)), way, std::get<2>(from_way_length)};
+                        [](const std::tuple<Vec3, Vec3, float>& origin_direction_length) {
+                            const auto& [origin, any_direction, ray_length] = origin_direction_length;
+                            Vec3 direction = normalized(any_direction);
+                            if (direction == Vec3{}) direction = {0, 1, 0};
+                            return Ray{to_double(origin), direction, ray_length};
                         });
 }
 

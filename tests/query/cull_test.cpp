@@ -11,7 +11,8 @@ namespace {
 
 class EveryCamera : public EveryStructure {};
 
-/// Right-angled, 2 · slope wide at 1 m, from 1 m to 9 m ahead of `eye`, looking along -z: column-major, OpenGL's depth.
+/// A symmetric perspective camera at `eye` that looks along -z: 2 · slope wide at 1 m, near 1 m, far 9 m. Column-major,
+/// OpenGL depth range.
 std::array<float, 16> camera(Vec3 eye, float slope) {
     const float near = 1, far = 9, scale = 1 / slope;
     const float a = -(far + near) / (far - near), b = -2 * far * near / (far - near);
@@ -27,7 +28,7 @@ TEST_P(EveryCamera, SeesWhatIsInFrontOfTheCamera) {
         RC_ASSERT(bool(cull(filled(GetParam(), boxes), camera(eye, slope), ClipDepth::MinusOneToOne, inside, &partly)));
         std::sort(inside.begin(), inside.end());
         std::sort(partly.begin(), partly.end());
-        // How far a corner is inside each plane, in metres times something; corners on a plane count either way.
+        // Scaled distance of each corner inside each plane. Corners within `slack` of a plane count as inside.
         const auto corners = [&](const Aabb& box, double slack, bool all) {
             std::array<int, 6> in{};
             for (int corner = 0; corner < 8; ++corner) {
@@ -43,11 +44,11 @@ TEST_P(EveryCamera, SeesWhatIsInFrontOfTheCamera) {
         };
         for (Proxy p = 0; p < boxes.size(); ++p) {
             const bool seen = std::binary_search(inside.begin(), inside.end(), p);
-            const bool half = std::binary_search(partly.begin(), partly.end(), p);
-            RC_ASSERT(seen || !half);
-            if (corners(boxes[p], -1e-4, true)) RC_ASSERT(seen && !half);
+            const bool cut = std::binary_search(partly.begin(), partly.end(), p);
+            RC_ASSERT(seen || !cut);
+            if (corners(boxes[p], -1e-4, true)) RC_ASSERT(seen && !cut);
             if (!corners(boxes[p], 1e-4, false)) RC_ASSERT(!seen);
-            if (seen && !half) RC_ASSERT(corners(boxes[p], 1e-4, true));
+            if (seen && !cut) RC_ASSERT(corners(boxes[p], 1e-4, true));
             const Vec3 middle = centre(boxes[p]);
             if (corners({middle, middle}, -1e-4, true)) RC_ASSERT(seen);
         }
@@ -55,7 +56,7 @@ TEST_P(EveryCamera, SeesWhatIsInFrontOfTheCamera) {
     }));
 }
 
-TEST_P(EveryCamera, SortsOutWhatABallContains) {
+TEST_P(EveryCamera, DistinguishesBoxesInsideASphereFromBoxesPartlyInside) {
     const AnyStructure structure =
         filled(GetParam(), {{{-1, -1, -1}, {1, 1, 1}}, {{1, 0, 0}, {9, 1, 1}}, {{3, 3, 3}, {4, 4, 4}}});
     std::vector<Proxy> inside, partly;
@@ -65,7 +66,7 @@ TEST_P(EveryCamera, SortsOutWhatABallContains) {
     EXPECT_EQ(partly, std::vector<Proxy>{1});
 }
 
-TEST(Cull, RefusesAMatrixThatShowsNothing) {
+TEST(Cull, RejectsASingularMatrix) {
     const AnyStructure structure = filled("brute_force", {{{0, 0, 0}, {1, 1, 1}}});
     std::vector<Proxy> inside;
     const std::array<float, 16> zeros{};

@@ -14,7 +14,7 @@ namespace {
 
 Aabb cube(float x, float y = 0, float z = 0, float side = 1) { return {{x, y, z}, {x + side, y + side, z + side}}; }
 
-/// Three in a row of which two touch, and a far one.
+/// Four cubes in a row: a and b touch, c and d are apart.
 template <class S> Index<std::string, S> four() {
     Index<std::string, S> index;
     for (const auto& [name, x] : {std::pair{"a", 0.f}, {"b", 1.f}, {"c", 2.5f}, {"d", 9.f}})
@@ -25,8 +25,8 @@ template <class S> Index<std::string, S> four() {
 
 using Names = std::vector<std::string>;
 
-/// A list, a tree with boxes in several leaves, one that follows its boxes, and one that offers most of its own. That
-/// all structures answer alike is shown elsewhere.
+/// Runs a test with four different kinds of structures: a list, a tree with boxes in several leaves, a dynamic tree,
+/// and one with own versions of most operations. The conformance tests cover the others.
 template <class F> void on_four_structures(F&& f) {
     const auto traced = [&]<broad::Structure S>() {
         SCOPED_TRACE(S::info.name);
@@ -36,7 +36,7 @@ template <class F> void on_four_structures(F&& f) {
         traced, broad::StructureList<broad::BruteForce, broad::Quadtree, broad::DynamicBvh, broad::WideBvh>{});
 }
 
-TEST(Index, HandsOutPairsInOrderOnce) {
+TEST(Index, VisitsPairsOnceInOrder) {
     on_four_structures([]<class S>() {
         auto index = four<S>();
         index.insert(cube(0.5f), "e");
@@ -53,7 +53,7 @@ TEST(Index, HandsOutPairsInOrderOnce) {
     });
 }
 
-TEST(Index, LetsThePairsMoveWhatIsStored) {
+TEST(Index, AllowsMovesInPairCallbacks) {
     on_four_structures([]<class S>() {
         auto index = four<S>();
         index.pairs([&](auto, auto&, auto b, auto&) { EXPECT_TRUE(index.move(b, cube(5))); });
@@ -64,7 +64,7 @@ TEST(Index, LetsThePairsMoveWhatIsStored) {
     });
 }
 
-TEST(Index, LeavesOutPairsOfTwoThatRest) {
+TEST(Index, SkipsPairsOfTwoSleepingValues) {
     on_four_structures([]<class S>() {
         Index<int, S> index;
         std::vector<typename Index<int, S>::Id> ids;
@@ -79,27 +79,27 @@ TEST(Index, LeavesOutPairsOfTwoThatRest) {
     });
 }
 
-TEST(Index, AsksAnotherIndexWithoutPuttingAnythingIntoIt) {
+TEST(Index, FindsPairsWithAnotherIndex) {
     on_four_structures([]<class S>() {
         auto players = four<S>();
         Index<int> walls;
         walls.insert(cube(2), 0);
         walls.insert({{0, 1, 0}, {9, 1, 1}}, 1);
         walls.commit();
-        Names met;
+        Names touching;
         players.pairs_with(walls,
-                           [&](std::string& player, int& wall) { met.push_back(player + std::to_string(wall)); });
-        EXPECT_EQ(met, (Names{"a1", "b0", "b1", "c0", "c1", "d1"}));
+                           [&](std::string& player, int& wall) { touching.push_back(player + std::to_string(wall)); });
+        EXPECT_EQ(touching, (Names{"a1", "b0", "b1", "c0", "c1", "d1"}));
         EXPECT_EQ(walls.size(), 2u);
         Names again;
         players.pairs_with(std::as_const(walls), [&](auto, std::string& player, auto, const int& wall) {
             again.push_back(player + std::to_string(wall));
         });
-        EXPECT_EQ(again, met);
+        EXPECT_EQ(again, touching);
     });
 }
 
-TEST(Index, AnswersWhereThingsAre) {
+TEST(Index, FindsValuesByPosition) {
     on_four_structures([]<class S>() {
         const auto index = four<S>();
         Names found;
@@ -115,7 +115,7 @@ TEST(Index, AnswersWhereThingsAre) {
         const auto near = index.nearest({4, 0.5, 0.5}, 2);
         ASSERT_EQ(near.size(), 2u);
         EXPECT_EQ(index.value(near[0].id), "c");
-        EXPECT_EQ(near[0].at, 0.5f);
+        EXPECT_EQ(near[0].distance, 0.5f);
         EXPECT_EQ(index.value(near[1].id), "b");
         EXPECT_EQ(index.nearest({4, 0.5, 0.5}, 9, 1).size(), 1u);
         Frustum ahead;  // x from 2 to 4
@@ -130,22 +130,22 @@ TEST(Index, AnswersWhereThingsAre) {
     });
 }
 
-TEST(Index, CastsRaysAgainstBoxesOrWhatIsInThem) {
+TEST(Index, CastsRaysAgainstBoxesOrExactShapes) {
     on_four_structures([]<class S>() {
         const auto index = four<S>();
         const Ray ray{{-3, 0.5, 0.5}, {1, 0, 0}, 100};
         const auto first = index.cast_ray(ray);
         ASSERT_TRUE(first);
         EXPECT_EQ(index.value(first->id), "a");
-        EXPECT_NEAR(first->at, 3, 1e-6);
+        EXPECT_NEAR(first->distance, 3, 1e-6);
         EXPECT_FALSE(index.cast_ray({{-3, 5, 0}, {1, 0, 0}, 100}));
         const auto only_late_names = [](const std::string& name, const Aabb&, float entry, float) {
-            return name < "c" ? broad::beyond : entry + 0.25f;
+            return name < "c" ? broad::infinite_distance : entry + 0.25f;
         };
         const auto exact = index.cast_ray(ray, only_late_names);
         ASSERT_TRUE(exact);
         EXPECT_EQ(index.value(exact->id), "c");
-        EXPECT_NEAR(exact->at, 5.75, 1e-5);
+        EXPECT_NEAR(exact->distance, 5.75, 1e-5);
         std::vector<typename Index<std::string, S>::Hit> all;
         index.cast_ray_through(ray, all);
         ASSERT_EQ(all.size(), 4u);
@@ -153,7 +153,7 @@ TEST(Index, CastsRaysAgainstBoxesOrWhatIsInThem) {
     });
 }
 
-TEST(Index, HandsOutLeavesWithTheirContents) {
+TEST(Index, VisitsLeavesWithTheirValues) {
     on_four_structures([]<class S>() {
         auto index = four<S>();
         index.for_each_leaf([](auto leaf) {
@@ -174,14 +174,14 @@ TEST(Index, HandsOutLeavesWithTheirContents) {
     });
 }
 
-TEST(Index, RefusesIdsThatAreStale) {
+TEST(Index, RejectsStaleIds) {
     Index<std::string> index;
     const auto a = index.insert(cube(0), "a");
     EXPECT_TRUE(index.erase(a));
     EXPECT_FALSE(index.contains(a));
     const auto b = index.insert(cube(1), "b");
     index.commit();
-    EXPECT_EQ(b.index, a.index) << "the place is used again";
+    EXPECT_EQ(b.index, a.index) << "the slot is reused";
     EXPECT_FALSE(index.erase(a));
     EXPECT_FALSE(index.move(a, cube(5)));
     EXPECT_FALSE(index.set_awake(a, false));
@@ -193,7 +193,7 @@ TEST(Index, RefusesIdsThatAreStale) {
     EXPECT_EQ(index.size(), 0u);
 }
 
-TEST(Index, LetsGoOfWhatIsErased) {
+TEST(Index, DestroysErasedValues) {
     const auto shared = std::make_shared<int>(1);
     Index<std::shared_ptr<int>> index;
     const auto id = index.insert(cube(0), shared);
@@ -205,8 +205,8 @@ TEST(Index, LetsGoOfWhatIsErased) {
     EXPECT_EQ(shared.use_count(), 1);
 }
 
-TEST(Index, CanBeFilledAnewEachFrameForYears) {
-    Index<std::unique_ptr<int>> index;  // values need only be movable
+TEST(Index, SupportsRefillingInEachFrame) {
+    Index<std::unique_ptr<int>> index;  // values only have to be movable
     Index<std::unique_ptr<int>>::Id last;
     for (int frame = 0; frame < 70'000; ++frame) {
         index.clear();

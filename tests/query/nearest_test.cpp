@@ -38,19 +38,19 @@ TEST_P(EveryNearest, FindsTheNearestOfAllBoxes) {
     }));
 }
 
-TEST_P(EveryNearest, MeasuresToTheThingsInTheBoxes) {
+TEST_P(EveryNearest, MeasuresToTheObjectsInTheBoxes) {
     EXPECT_TRUE(rc::check([&] {
         const auto boxes = *any_boxes();
         const Vec3d point = to_double(*any_point(9));
-        // The thing is the middle of the box, and only even proxies count.
-        const auto to_middle = [&](const Aabb& box) {
+        // The object is the centre of the box, and the filter accepts even proxies.
+        const auto to_centre = [&](const Aabb& box) {
             return static_cast<float>(length(to_double(centre(box)) - point));
         };
-        const auto exact = [&](Proxy, const Aabb& box, float, float) { return to_middle(box); };
+        const auto exact = [&](Proxy, const Aabb& box, float, float) { return to_centre(box); };
         const auto even = [](Proxy p) { return p % 2 == 0; };
         std::vector<Hit> expected, found;
         for (Proxy p = 0; p < boxes.size(); p += 2)
-            if (to_middle(boxes[p]) <= 5) expected.push_back({to_middle(boxes[p]), p});
+            if (to_centre(boxes[p]) <= 5) expected.push_back({to_centre(boxes[p]), p});
         std::sort(expected.begin(), expected.end());
         const AnyStructure structure = filled(GetParam(), boxes);
         const auto first = nearest(structure, point, 5, exact, even);
@@ -61,17 +61,17 @@ TEST_P(EveryNearest, MeasuresToTheThingsInTheBoxes) {
     }));
 }
 
-TEST_P(EveryNearest, KeepsTheSmallestProxiesOfThoseAsFar) {
+TEST_P(EveryNearest, KeepsTheSmallestProxiesOfEqualDistances) {
     const AnyStructure structure = filled(GetParam(), std::vector<Aabb>(30, Aabb{{2, 0, 0}, {3, 1, 1}}));
     std::vector<Hit> found;
     nearest(structure, {0, 0.5, 0.5}, 4, 2, found);
     EXPECT_EQ(found, (std::vector<Hit>{{2, 0}, {2, 1}, {2, 2}, {2, 3}}));
 }
 
-TEST_P(EveryNearest, TakesAThingThatClaimsToBeNearerThanItsBoxAsFarAsTheBox) {
+TEST_P(EveryNearest, ClampsAnExactDistanceToTheDistanceOfTheBox) {
     const AnyStructure structure = filled(GetParam(), {{{2, 0, 0}, {3, 1, 1}}, {{1, 0, 0}, {1.5f, 1, 1}}});
-    const auto liar = [](Proxy p, const Aabb&, float, float) { return p == 0 ? 0.5f : 1.25f; };
-    EXPECT_EQ(nearest(structure, {0, 0.5, 0.5}, 9, liar).value_or(Hit{}), (Hit{1.25f, 1}));
+    const auto too_near = [](Proxy p, const Aabb&, float, float) { return p == 0 ? 0.5f : 1.25f; };
+    EXPECT_EQ(nearest(structure, {0, 0.5, 0.5}, 9, too_near).value_or(Hit{}), (Hit{1.25f, 1}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryNearest, ::testing::ValuesIn(structure_names()), name_of);

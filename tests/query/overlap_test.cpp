@@ -13,7 +13,7 @@ std::vector<Proxy> found_by(const AnyStructure& structure, const auto& region) {
     return found;
 }
 
-/// Metres from a point to a box, in long double.
+/// Returns the distance from a point to a box, in long double.
 long double distance(Vec3d p, const Aabb& box) {
     long double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -22,7 +22,7 @@ long double distance(Vec3d p, const Aabb& box) {
     }
     return std::sqrt(sum);
 }
-/// The same from a segment, by halving: the distance is convex along it.
+/// The same from a segment, by ternary search: the distance is convex along it.
 long double distance(Vec3d a, Vec3d b, const Aabb& box) {
     double lo = 0, hi = 1;
     const auto at = [&](double t) { return distance(a + (b - a) * t, box); };
@@ -36,32 +36,32 @@ long double distance(Vec3d a, Vec3d b, const Aabb& box) {
 TEST_P(EveryOverlap, FindsTheBoxesThatABoxTouches) {
     EXPECT_TRUE(rc::check([&] {
         const auto boxes = *any_boxes();
-        const Aabb asked = *any_box();
-        RC_ASSERT(found_by(filled(GetParam(), boxes), asked) == those(boxes, [&](const Aabb& box) {
+        const Aabb query = *any_box();
+        RC_ASSERT(found_by(filled(GetParam(), boxes), query) == proxies_where(boxes, [&](const Aabb& box) {
                       for (int axis = 0; axis < 3; ++axis)
-                          if (box.hi[axis] < asked.lo[axis] || box.lo[axis] > asked.hi[axis]) return false;
+                          if (box.hi[axis] < query.lo[axis] || box.lo[axis] > query.hi[axis]) return false;
                       return true;
                   }));
     }));
 }
 
-TEST_P(EveryOverlap, FindsTheBoxesThatAPointIsIn) {
+TEST_P(EveryOverlap, FindsTheBoxesThatContainAPoint) {
     EXPECT_TRUE(rc::check([&] {
         const auto boxes = *any_boxes();
         const Vec3d point = to_double(*any_point());
         std::vector<Proxy> found;
         containing(filled(GetParam(), boxes), point, found);
-        RC_ASSERT(found == those(boxes, [&](const Aabb& box) { return distance(point, box) == 0; }));
+        RC_ASSERT(found == proxies_where(boxes, [&](const Aabb& box) { return distance(point, box) == 0; }));
     }));
 }
 
-TEST_P(EveryOverlap, FindsTheBoxesThatABallTouches) {
+TEST_P(EveryOverlap, FindsTheBoxesThatASphereTouches) {
     EXPECT_TRUE(rc::check([&] {
         const auto boxes = *any_boxes();
         const Vec3d centre = to_double(*any_point());
         const float radius = std::abs(*quarters(3));
-        // On a grid of quarters squares of distances are exact: a ball that only touches counts.
-        const auto expected = those(boxes, [&](const Aabb& box) { return distance(centre, box) <= radius; });
+        // On a grid of 0.25 m squared distances are exact, so a sphere that only touches must count.
+        const auto expected = proxies_where(boxes, [&](const Aabb& box) { return distance(centre, box) <= radius; });
         const AnyStructure structure = filled(GetParam(), boxes);
         const SphereRegion region(centre, radius);
         RC_ASSERT(found_by(structure, region) == expected);
@@ -75,10 +75,12 @@ TEST_P(EveryOverlap, FindsTheBoxesThatACapsuleTouches) {
         const Vec3d a = to_double(*any_point()), b = to_double(*any_point());
         const float radius = std::abs(*quarters(3));
         const auto found = found_by(filled(GetParam(), boxes), CapsuleRegion(a, b, radius));
-        const auto surely = those(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius - 1e-7L; });
-        const auto perhaps = those(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius + 1e-7L; });
-        RC_ASSERT(std::includes(found.begin(), found.end(), surely.begin(), surely.end()));
-        RC_ASSERT(std::includes(perhaps.begin(), perhaps.end(), found.begin(), found.end()));
+        const auto certain =
+            proxies_where(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius - 1e-7L; });
+        const auto possible =
+            proxies_where(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius + 1e-7L; });
+        RC_ASSERT(std::includes(found.begin(), found.end(), certain.begin(), certain.end()));
+        RC_ASSERT(std::includes(possible.begin(), possible.end(), found.begin(), found.end()));
     }));
 }
 

@@ -11,31 +11,31 @@ SOURCES = {"02_a": "int main() {\n    if (true) {\n        go();\n        stay()
 OUTPUTS = {"02_a": "went\nstayed\n", "03_b": "b\n"}
 
 
-def objections(page):
+def errors(page):
     return tour.check(page, SOURCES.get, OUTPUTS.get)[0]
 
 
 class CheckTour(unittest.TestCase):
-    def test_takes_a_part_of_the_example_indented_less(self):
-        self.assertEqual(objections("`examples/02_a.cpp`:\n```cpp\nif (true) {\n    go();\n```\n"), [])
+    def test_accepts_part_of_an_example_with_less_indentation(self):
+        self.assertEqual(errors("`examples/02_a.cpp`:\n```cpp\nif (true) {\n    go();\n```\n"), [])
 
-    def test_sees_lines_that_are_left_out_changed_or_cut(self):
+    def test_finds_missing_changed_and_reordered_lines(self):
         for code in ["if (true) {\n    stay();\n", "go( );\n", "go()\n", "stay();\ngo();\n"]:
             with self.subTest(code=code):
-                self.assertEqual(len(objections(f"examples/02_a.cpp\n```cpp\n{code}```\n")), 1)
+                self.assertEqual(len(errors(f"examples/02_a.cpp\n```cpp\n{code}```\n")), 1)
 
-    def test_judges_by_the_example_that_was_named_last(self):
+    def test_compares_with_the_example_named_last(self):
         page = "examples/02_a.cpp\nexamples/03_b.cpp\n```cpp\n{}\n```\n"
-        self.assertEqual(objections(page.format("b();")), [])
-        self.assertEqual(len(objections(page.format("go();"))), 1)
-        self.assertEqual(len(objections("```cpp\nb();\n```\n")), 1)
+        self.assertEqual(errors(page.format("b();")), [])
+        self.assertEqual(len(errors(page.format("go();"))), 1)
+        self.assertEqual(len(errors("```cpp\nb();\n```\n")), 1)
 
-    def test_sees_another_output_and_can_renew_it(self):
+    def test_finds_wrong_output_and_can_update_it(self):
         page = "examples/02_a.cpp\n```text\nwent\n```\nand\n"
-        found, renewed = tour.check(page, SOURCES.get, OUTPUTS.get)
+        found, updated = tour.check(page, SOURCES.get, OUTPUTS.get)
         self.assertEqual(len(found), 1)
-        self.assertEqual(renewed, "examples/02_a.cpp\n```text\nwent\nstayed\n```\nand\n")
-        self.assertEqual(objections(renewed), [])
+        self.assertEqual(updated, "examples/02_a.cpp\n```text\nwent\nstayed\n```\nand\n")
+        self.assertEqual(errors(updated), [])
 
 
 if __name__ == "__main__":

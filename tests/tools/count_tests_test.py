@@ -1,4 +1,4 @@
-"""Feeds tools/count_tests.py results of each kind and reads its last line."""
+"""Runs tools/count_tests.py on each kind of result and checks its last line."""
 import subprocess
 import sys
 import tempfile
@@ -13,7 +13,7 @@ def case(name, inside=""):
 
 
 def count(entries, reports=None):
-    """Exit code and output for ctest entries (name, status, output) and GoogleTest reports (suite: cases)."""
+    """Returns exit code and output for ctest entries (name, status, output) and GoogleTest reports (suite: cases)."""
     with tempfile.TemporaryDirectory() as folder:
         lines = [f'<testcase name="{n}" status="{s}"><system-out>{o}</system-out></testcase>' for n, s, o in entries]
         (Path(folder) / "ctest.xml").write_text("<testsuite>" + "".join(lines) + "</testsuite>")
@@ -32,7 +32,7 @@ class CountTests(unittest.TestCase):
         self.assertEqual((code, output.splitlines()[-1]), (0, "3 passed, 0 failed, 1 skipped"))
         self.assertIn("1 skipped: no data", output)
 
-    def test_a_failed_case_is_named_and_fails(self):
+    def test_a_failed_case_is_listed_and_gives_exit_code_1(self):
         code, output = count([("math", "fail", "")], {"math": [case("a"), case("b", '<failure message="x"/>')]})
         self.assertEqual((code, output.splitlines()[-1]), (1, "1 passed, 1 failed, 0 skipped"))
         self.assertIn("failed: math.b", output)
@@ -47,7 +47,7 @@ class CountTests(unittest.TestCase):
         output = count([("viewer", "fail", "# pass 7\n# fail 2\n# skipped 1\n")])[1]
         self.assertEqual(output.splitlines()[-1], "7 passed, 2 failed, 1 skipped")
 
-    def test_nothing_ran_is_a_failure(self):
+    def test_an_empty_run_is_a_failure(self):
         self.assertEqual(count([])[0], 1)
 
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Boxes as six rows of numbers, so that one instruction can test many of them.
+/// Boxes as six columns of floats (structure of arrays), so that one instruction tests many of them.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -10,22 +10,22 @@
 
 namespace fase::broad {
 
-/// Where the numbers of a set of boxes lie, for the loops of box_scan.hpp. Index 0 is the axis that the boxes are
-/// sorted along, where they are. Behind the last box stand BoxColumns::padding more that overlap nothing.
+/// The columns of a set of boxes, for the loops of box_scan.hpp. Index 0 is the sort axis of sorted boxes. After the
+/// last box there are BoxColumns::padding more boxes that overlap nothing.
 struct ColumnsView {
     std::array<const float*, 3> lo{}, hi{};
     const Proxy* proxies = nullptr;
     std::size_t count = 0;
 };
 
-/// Boxes and their proxies by place, each bound in an array of its own.
+/// Boxes and their proxies by index, one array per bound.
 class BoxColumns {
 public:
     static constexpr std::size_t padding = 16;
 
     BoxColumns() { resize(0); }
 
-    /// New places hold boxes that overlap nothing.
+    /// New boxes overlap nothing.
     void resize(std::size_t count) {
         constexpr float nan = std::numeric_limits<float>::quiet_NaN();
         for (std::vector<float>& bound : bounds_) {
@@ -53,15 +53,15 @@ public:
     [[nodiscard]] std::size_t bytes() const {
         return 6 * bounds_[0].capacity() * sizeof(float) + proxies_.capacity() * sizeof(Proxy);
     }
-    /// With `axis` (0 to 2) as the first.
+    /// Returns the columns with `axis` (0 to 2) at index 0.
     [[nodiscard]] ColumnsView view(int axis = 0) const {
-        ColumnsView seen{.proxies = proxies_.data(), .count = count_};
+        ColumnsView columns{.proxies = proxies_.data(), .count = count_};
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t turned = (k + static_cast<std::size_t>(axis)) % 3;
-            seen.lo[k] = bounds_[turned].data();
-            seen.hi[k] = bounds_[turned + 3].data();
+            const std::size_t source = (k + static_cast<std::size_t>(axis)) % 3;
+            columns.lo[k] = bounds_[source].data();
+            columns.hi[k] = bounds_[source + 3].data();
         }
-        return seen;
+        return columns;
     }
 
 private:

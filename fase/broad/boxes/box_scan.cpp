@@ -1,4 +1,4 @@
-/// Compiles the loops for every SIMD target and picks one at run time.
+/// Compiles the loops for every SIMD target and selects one at run time.
 // Vectors of unknown size cannot be members; such targets fall back to 128 bits.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
@@ -20,8 +20,8 @@ void append_pairs(std::vector<Pair>& out, const Pair* pairs, std::size_t count) 
     out.insert(out.end(), pairs, pairs + count);
 }
 
-/// The first place from `from` on of a box that begins at `lo` or behind it; with Ties::Theirs, behind it. Looks in
-/// steps of twice the length, so that near places are found at once.
+/// Returns the first index from `from` on of a box that begins at or after `lo`; with Ties::Theirs, after `lo`. A
+/// galloping search, fast for near indices.
 std::size_t first_beginning(const ColumnsView& boxes, std::size_t from, float lo, Ties ties) {
     const float* const begins = boxes.lo[0];
     const auto is_before = [&](std::size_t at) { return ties == Ties::Mine ? begins[at] < lo : begins[at] <= lo; };

@@ -1,4 +1,4 @@
-/// The cut of least surface, sought more thoroughly than a moving tree can afford.
+/// Implements split_by_area().
 #include "fase/broad/builders/area_split.hpp"
 
 #include <algorithm>
@@ -7,15 +7,15 @@
 namespace fase::broad {
 namespace {
 
-constexpr std::size_t few = 32, bin_count = 32;
+constexpr std::size_t few = 32, bin_count = 32;  // up to `few` items, every split between sorted centres is tried
 
-/// The items on one side of a cut, or in one bin.
+/// The items on one side of a split, or in one bin.
 struct Side {
     Aabb box;
     std::size_t count = 0;
-    void add(const Aabb& more, std::size_t how_many) {
-        box = merge(box, more);
-        count += how_many;
+    void add(const Aabb& added, std::size_t added_count) {
+        box = merge(box, added);
+        count += added_count;
     }
     [[nodiscard]] float cost() const { return static_cast<float>(count) * box_cost(box); }
 };
@@ -23,15 +23,15 @@ struct Side {
 struct Best {
     float cost = Aabb::infinity;
     int axis = -1;
-    std::size_t cut = 0;  // items, or bins, that go to the left
+    std::size_t cut = 0;  // number of items or bins on the left
     Split split;
 };
 
 constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
 
-/// Tries the cuts between neighbours of a row of sides.
+/// Tries the splits between consecutive sides of a row.
 void try_cuts(std::span<const Side> row, int axis, Best& best) {
-    std::array<Side, std::max(few, bin_count)> right;  // right[i]: row[i] and later
+    std::array<Side, std::max(few, bin_count)> right;  // right[i]: sum of row[i] and later
     Side sum;
     for (std::size_t i = row.size(); i-- > 0;) {
         sum.add(row[i].box, row[i].count);
@@ -52,9 +52,9 @@ Split split_few(std::span<BuildItem> items) {
     Best best;
     for (int axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 0; i < items.size(); ++i) {
-            const float mine = doubled_centre(items[i].box, axis);
+            const float centre = doubled_centre(items[i].box, axis);
             std::size_t k = i;
-            for (; k > 0 && doubled_centre(items[order[k - 1]].box, axis) > mine; --k) order[k] = order[k - 1];
+            for (; k > 0 && doubled_centre(items[order[k - 1]].box, axis) > centre; --k) order[k] = order[k - 1];
             order[k] = static_cast<std::uint8_t>(i);
         }
         for (std::size_t i = 0; i < items.size(); ++i) row[i] = {items[order[i]].box, 1};
@@ -95,7 +95,7 @@ Split split_by_area(std::span<BuildItem> items) {
     for (int axis = 0; axis < 3; ++axis) {
         if (bins_per_metre[axis] > 0) try_cuts(bins[static_cast<std::size_t>(axis)], axis, best);
     }
-    if (best.axis < 0) return split_by_binned_area(items);  // all centres in one place
+    if (best.axis < 0) return split_by_binned_area(items);  // all centres coincide
     std::partition(items.begin(), items.end(),
                    [&](const BuildItem& item) { return bin_of(item.box, best.axis) < best.cut; });
     return best.split;

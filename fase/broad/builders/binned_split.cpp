@@ -1,4 +1,4 @@
-/// The cut of least surface among a few evenly spaced ones.
+/// Implements split_by_binned_area().
 #include "fase/broad/builders/binned_split.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct Bin {
 
 constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
 
-/// Which bin a box's centre falls into, along one axis.
+/// Maps the centre of a box to a bin on one axis.
 struct Binning {
     int axis = 0;
     float first = 0, bins_per_metre = 0;
@@ -58,7 +58,7 @@ Split split_by_binned_area(std::span<BuildItem> items) {
         bin.box = merge(bin.box, item.box);
         ++bin.count;
     }
-    std::array<Bin, bin_count> right;  // right[i]: bins i and later
+    std::array<Bin, bin_count> right;  // right[i]: sum of bins i and later
     Bin sum;
     for (std::size_t i = bin_count; i-- > 0;) {
         sum = {merge(sum.box, bins[i].box), sum.count + bins[i].count};

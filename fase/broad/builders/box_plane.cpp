@@ -1,4 +1,4 @@
-/// How planes across an axis cut boxes.
+/// Implements splits by axis-aligned planes.
 #include "fase/broad/builders/box_plane.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ PlaneCut cut_of(const BoxPlane& plane, std::span<const Move> boxes) {
     return cut;
 }
 
-float ranked(std::vector<float>& values, std::size_t k) {
+float nth_smallest(std::vector<float>& values, std::size_t k) {
     const auto kth = values.begin() + static_cast<std::ptrdiff_t>(k);
     std::nth_element(values.begin(), kth, values.end());
     return *kth;
@@ -20,25 +20,25 @@ float ranked(std::vector<float>& values, std::size_t k) {
 std::optional<BoxPlane> halving_plane(std::span<const Move> boxes, std::vector<float>& scratch) {
     std::optional<BoxPlane> best;
     if (boxes.size() < 2) return best;
-    std::size_t together = boxes.size() - std::max<std::size_t>(1, boxes.size() / 8) + 1;  // to be fallen short of
+    std::size_t limit = boxes.size() - std::max<std::size_t>(1, boxes.size() / 8) + 1;  // a plane must stay below it
     const auto try_at = [&](int axis, float at) {
         const std::size_t largest = cut_of({axis, at}, boxes).largest();
-        if (largest >= together) return;
-        together = largest;
+        if (largest >= limit) return;
+        limit = largest;
         best = {axis, at};
     };
     for (int axis = 0; axis < 3; ++axis) {
         for (const bool upper : {true, false}) {
             scratch.clear();
             for (const Move& m : boxes) scratch.push_back(upper ? m.box.hi[axis] : m.box.lo[axis]);
-            const float middle = ranked(scratch, boxes.size() / 2);
-            // Where many faces are at `middle`, the plane must go through the next face, or all stay together.
+            const float median = nth_smallest(scratch, boxes.size() / 2);
+            // Where many faces are at the median, only a plane through the next face separates them.
             float next = upper ? -Aabb::infinity : Aabb::infinity;
             for (const float face : scratch) {
-                if (upper && face < middle) next = std::max(next, face);
-                if (!upper && face > middle) next = std::min(next, face);
+                if (upper && face < median) next = std::max(next, face);
+                if (!upper && face > median) next = std::min(next, face);
             }
-            try_at(axis, middle);
+            try_at(axis, median);
             if (next > -Aabb::infinity && next < Aabb::infinity) try_at(axis, next);
         }
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Planes across an axis, and how they cut boxes.
+/// Axis-aligned planes, and how they split boxes.
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,20 +16,22 @@ struct BoxPlane {
     friend constexpr bool operator==(const BoxPlane&, const BoxPlane&) = default;
 };
 
-/// A box that touches the plane from one side is on that side; one that lies in it is below.
+/// A box that touches the plane from one side is on that side; a box in the plane is below.
 constexpr Side side_of(const BoxPlane& plane, const Aabb& box) {
-    return box.hi[plane.axis] <= plane.at ? Side::Below : box.lo[plane.axis] >= plane.at ? Side::Above : Side::Astride;
+    return box.hi[plane.axis] <= plane.at   ? Side::Below
+           : box.lo[plane.axis] >= plane.at ? Side::Above
+                                            : Side::Straddling;
 }
 
-/// O(n).
+/// Counts the boxes on each side of the plane. O(n).
 PlaneCut cut_of(const BoxPlane& plane, std::span<const Move> boxes);
 
-/// The k-th smallest, from 0; reorders `values`, which must hold more than k.
-float ranked(std::vector<float>& values, std::size_t k);
+/// Returns the k-th smallest value, counted from 0. Reorders `values`, which must hold more than k.
+float nth_smallest(std::vector<float>& values, std::size_t k);
 
-/// A plane that leaves at most 7/8 of the boxes together (or all but one, when they are less than 8); nullopt when
-/// there is none among those that go through faces in the middle of each axis, as for boxes that are all alike. O(n);
-/// `scratch` is overwritten. Trees that have grown too deep end within O(log n) levels by it.
+/// Returns a plane that leaves at most 7/8 of the boxes together (for less than 8 boxes: all but one). Tries planes
+/// through the median faces of each axis; nullopt when none of them is good enough, for example for identical boxes.
+/// O(n); `scratch` is overwritten. Ends trees that have become too deep within O(log n) levels.
 std::optional<BoxPlane> halving_plane(std::span<const Move> boxes, std::vector<float>& scratch);
 
 }  // namespace fase::broad

@@ -1,27 +1,26 @@
-/// Sharing boxes out to the cells of quadtree and octree, from the top.
+/// Distributes boxes to the cells of quadtree and octree, top-down.
 #include "fase/broad/builders/bucket_tree.hpp"
 
 #include "fase/broad/builders/cell_pairs.hpp"
-#include "fase/broad/search/parted_pairs.hpp"
 
 namespace fase::broad {
 namespace {
 
-/// Three (or two) steps side by side, 16 bits each, of which the highest is free; 16 bits are left over. So all axes
-/// are compared at once.
+/// Packs three (or two) steps of 15 bits in fields of 16 bits, so that one subtraction compares all axes. The highest
+/// bit of each field is a guard bit; the highest field of the word is free.
 constexpr std::uint64_t guards = 0x8000'8000'8000;
 template <class Steps> std::uint64_t packed(const Steps& steps) {
     std::uint64_t word = 0;
     for (std::size_t a = 0; a < steps.size(); ++a) word |= std::uint64_t{steps[a]} << (16 * a);
     return word;
 }
-/// The bits 16a where the a-th steps are no less than those of `limits`, which has its guards and the rest clear.
+/// Sets bit 16a where the a-th step is at least that of `limits`. The guard bits and the free field of `limits` are 0.
 constexpr std::uint64_t no_less(std::uint64_t steps, std::uint64_t limits) {
     return (((steps | guards) - limits) & guards) >> 15;
 }
 
-/// The children that a box goes to; bits 2a and 2a + 1 of the index say whether its lower and its upper corner lie
-/// above the cut along the a-th axis.
+/// The children that a box enters, as a bit mask. Bits 2a and 2a + 1 of the index tell whether its lower and upper
+/// corner are above the split on the a-th axis.
 constexpr std::array<std::uint8_t, 64> children_by_sides = [] {
     std::array<std::uint8_t, 64> children{};
     for (std::uint32_t sides = 0; sides < children.size(); ++sides) {
@@ -37,8 +36,8 @@ constexpr std::array<std::uint8_t, 64> children_by_sides = [] {
     return children;
 }();
 
-/// Byte k is bit k of the index.
-constexpr std::array<std::uint64_t, 256> a_byte_a_bit = [] {
+/// Byte k of an entry is bit k of its index.
+constexpr std::array<std::uint64_t, 256> byte_per_bit = [] {
     std::array<std::uint64_t, 256> bytes{};
     for (std::size_t mask = 0; mask < bytes.size(); ++mask)
         for (std::size_t bit = 0; bit < 8; ++bit) bytes[mask] |= std::uint64_t{mask >> bit & 1} << (8 * bit);
@@ -70,7 +69,7 @@ template <int Dim> void BucketTree<Dim>::rebuild() {
     this->tree_.finish();
 }
 
-/// How many records go to each child; leaves in masks_ to which each one goes.
+/// Counts the records that enter each child. Stores the child masks of all records in masks_.
 template <int Dim> auto BucketTree<Dim>::count_children(const Task& task) -> Counts {
     Steps middle{};
     for (std::size_t a = 0; a < Dim; ++a)
@@ -81,27 +80,28 @@ template <int Dim> auto BucketTree<Dim>::count_children(const Task& task) -> Cou
     Counts counts{};
     for (std::uint32_t first = 0; first < count; first += 255) {
         const std::uint32_t end = std::min(count, first + 255);
-        std::uint64_t sums = 0;  // a byte a child
+        std::uint64_t sums = 0;  // one byte per child
         for (std::uint32_t i = first; i < end; ++i) {
             const Record& record = records_[task.begin + i];
             const std::uint64_t sides = no_less(record.lo, cut) | no_less(record.hi, cut) << 1;
-            constexpr std::uint64_t together = 1ull << 32 | 1ull << 18 | 1ull << 4;  // bits 0, 16, 32 to 32, 34, 36
+            constexpr std::uint64_t gather = 1ull << 32 | 1ull << 18 | 1ull << 4;  // moves bits 0, 16, 32 to 32, 34, 36
             constexpr std::uint64_t all_sides = (1u << 2 * Dim) - 1;
-            const std::uint32_t mask = children_by_sides[(sides * together >> 32) & all_sides];
+            const std::uint32_t mask = children_by_sides[(sides * gather >> 32) & all_sides];
             masks_[i] = static_cast<std::uint8_t>(mask);
-            sums += a_byte_a_bit[mask];
+            sums += byte_per_bit[mask];
         }
         for (std::uint32_t child = 0; child < child_count; ++child) counts[child] += sums >> (8 * child) & 0xff;
     }
     return counts;
 }
 
-/// Is it worth it to have `entries` instead of the task's, for the tests that are saved?
-template <int Dim> bool BucketTree<Dim>::pays(const Task& task, const Counts& counts, std::uint64_t entries) const {
+/// Returns whether a split into `entries` records saves enough pair tests.
+template <int Dim>
+bool BucketTree<Dim>::is_worthwhile(const Task& task, const Counts& counts, std::uint64_t entries) const {
     const std::uint64_t before = task.end - task.begin, more = entries - before;
     if (more == 0) return true;
     if (more > task.spare) return false;
-    if (more <= before / 16) return true;  // a few large boxes must not keep a cluster together
+    if (more <= before / 16) return true;  // a few large boxes must not prevent the split of a cluster
     std::uint64_t tests = 0;
     for (const std::uint64_t count : counts) tests += count * count;
     return tests + limits_.capacity * more < before * before;
@@ -119,15 +119,15 @@ template <int Dim> bool BucketTree<Dim>::try_split(const Task& task) {
         children |= 1u << child;
         last = child;
     }
-    if (!pays(task, counts, entries)) return false;
+    if (!is_worthwhile(task, counts, entries)) return false;
 
     const std::uint32_t first_node = this->tree_.split(task.node, static_cast<std::uint16_t>(children));
     if (records_.size() < task.end + entries) records_.resize(std::max(task.end + entries, 2 * records_.size()));
-    Counts to{};
+    Counts target{};
     std::uint32_t top = task.end, node = first_node + static_cast<std::uint32_t>(std::popcount(children));
-    for (std::uint32_t child = last + 1; child-- > 0;) {  // the first child ends up on top, and is next
+    for (std::uint32_t child = last + 1; child-- > 0;) {  // the first child is on top of the stack, so it comes next
         if (counts[child] == 0) continue;
-        to[child] = top;
+        target[child] = top;
         const std::uint64_t spare = (task.spare - (entries - count)) * std::uint64_t{counts[child]} / entries;
         tasks_.push_back({task.path.child(child), --node, top, top + counts[child], static_cast<std::uint32_t>(spare)});
         top += counts[child];
@@ -135,12 +135,12 @@ template <int Dim> bool BucketTree<Dim>::try_split(const Task& task) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const Record record = records_[task.begin + i];
         for (std::uint32_t mask = masks_[i]; mask != 0; mask &= mask - 1)
-            records_[to[static_cast<std::size_t>(std::countr_zero(mask))]++] = record;
+            records_[target[static_cast<std::size_t>(std::countr_zero(mask))]++] = record;
     }
     return true;
 }
 
-/// The visitors of a leaf are sorted by their mark.
+/// Sorts the references of the leaf by their marks.
 template <int Dim> void BucketTree<Dim>::make_leaf(const Task& task) {
     CellTree& tree = this->tree_;
     const std::span<const Move> rows = this->store_.regular();
@@ -152,21 +152,22 @@ template <int Dim> void BucketTree<Dim>::make_leaf(const Task& task) {
         const std::uint64_t begins = no_less(record.lo, begin);
         return static_cast<std::uint32_t>(begins | begins >> 15 | begins >> 30) & owned;
     };
-    Counts of_mark{};
+    Counts mark_counts{};
     for (std::uint32_t i = task.begin; i < task.end; ++i) {
         const Record& record = records_[i];
         const std::uint32_t mark = mark_of_record(record), row = record.row();
-        ++of_mark[mark];
+        ++mark_counts[mark];
         if (mark == owned) place_[row] = tree.add_owned(rows[row]);
     }
-    const std::uint32_t visitors = task.end - task.begin - of_mark[owned];
-    if (visitors == 0) return;
-    const std::span<CellTree::Visitor> row = tree.add_visitors(visitors);
-    Counts to{};
-    for (std::uint32_t mark = 1; mark < child_count; ++mark) to[mark] = to[mark - 1] + of_mark[mark - 1];
+    const std::uint32_t references = task.end - task.begin - mark_counts[owned];
+    if (references == 0) return;
+    const std::span<CellTree::Reference> row = tree.add_references(references);
+    Counts target{};
+    for (std::uint32_t mark = 1; mark < child_count; ++mark) target[mark] = target[mark - 1] + mark_counts[mark - 1];
     for (std::uint32_t i = task.begin; i < task.end; ++i) {
         const std::uint32_t mark = mark_of_record(records_[i]);
-        if (mark != owned) row[to[mark]++] = {place_[records_[i].row()], mark};  // its owner comes first in the walk
+        // The leaf that owns the box was made before, as leaves are made in traversal order.
+        if (mark != owned) row[target[mark]++] = {place_[records_[i].row()], mark};
     }
 }
 
@@ -182,7 +183,7 @@ template <int Dim> void BucketTree<Dim>::find_pairs(TaskRunner& tasks, std::vect
         this->store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
     }
     const std::size_t leaves = this->tree_.leaves().size();
-    find_in_parts(tasks, parts_of(leaves), out, [&](std::size_t i, std::vector<Pair>& found) {
+    find_in_parts(tasks, parts_of(leaves), buffers_, out, [&](std::size_t i, std::vector<Pair>& found) {
         PairSink sink(found);
         find_pairs_in_leaves(this->tree_, leaves_of_part(leaves, i), Dim, false, sink);
     });
@@ -194,7 +195,7 @@ template <int Dim> void BucketTree<Dim>::find_awake_pairs(std::vector<Pair>& out
     this->store_.unbounded_pairs(true, [&](Proxy p, Proxy q) { sink.add(p, q); });
     const std::span<const CellTree::Node> nodes = this->tree_.nodes();
     if (nodes.empty()) return;
-    constexpr std::size_t gap = 64;  // leaves that may be passed over one by one
+    constexpr std::size_t gap = 64;  // sleeping leaves within a range are cheaper to skip one by one
     LeafRange range;
     LocalStack<std::uint32_t, 128> open;
     open.push(CellTree::root);
@@ -214,14 +215,14 @@ template <int Dim> void BucketTree<Dim>::find_awake_pairs(std::vector<Pair>& out
     find_pairs_in_leaves(this->tree_, range, Dim, true, sink);
 }
 
-/// Holds the leaves against the steps of all boxes, computed afresh.
+/// Checks the leaves against the steps of all boxes, computed again.
 template <int Dim> std::string BucketTree<Dim>::broken_cells() const {
     const CellTree& tree = this->tree_;
     std::string broken;
     std::vector<std::uint32_t> entries_of(tree.boxes().size(), 0);
     tree.walk(Path{}, [&](std::uint32_t at, const Path& path) {
         const CellTree::Node& node = tree.nodes()[at];
-        if (path.depth > limits_.max_depth) broken = "a node lies too deep";
+        if (path.depth > limits_.max_depth) broken = "a node is too deep";
         if (!node.is_leaf()) return;
         const CellTree::Leaf& leaf = tree.leaves()[node.leaf_begin];
         const auto check = [&](std::uint32_t place, std::uint32_t mark) {
@@ -231,14 +232,14 @@ template <int Dim> std::string BucketTree<Dim>::broken_cells() const {
             for (std::size_t a = 0; a < Dim; ++a)
                 if (lo[a] >= path.end(a) || hi[a] < path.begin(a))
                     broken = "a leaf holds a box that does not overlap it";
-            if (mark_of(lo, path) != mark) broken = "a box is not marked by where it begins";
+            if (mark_of(lo, path) != mark) broken = "the mark of a box does not match where it begins";
         };
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.owned; ++i) check(i, owned);
         std::uint32_t before = 0;
-        for (const CellTree::Visitor visitor : tree.visitors().subspan(leaf.first_visitor, leaf.visitors)) {
-            check(visitor.place(), visitor.mark());
-            if (visitor.mark() < before) broken = "the visitors of a leaf are not sorted by their mark";
-            before = visitor.mark();
+        for (const CellTree::Reference reference : tree.references().subspan(leaf.first_reference, leaf.references)) {
+            check(reference.place(), reference.mark());
+            if (reference.mark() < before) broken = "the references of a leaf are not sorted by their mark";
+            before = reference.mark();
         }
     });
     std::vector<std::uint32_t> leaves_of(tree.boxes().size(), 0);
@@ -265,7 +266,7 @@ template <int Dim> std::string BucketTree<Dim>::broken_cells() const {
         }
     }
     if (broken.empty() && leaves_of != entries_of) return "a box is not in every leaf that it overlaps";
-    const std::size_t entries = tree.boxes().size() + tree.visitors().size();
+    const std::size_t entries = tree.boxes().size() + tree.references().size();
     if (broken.empty() && entries > max_entries * tree.boxes().size()) return "there are too many entries";
     return broken;
 }

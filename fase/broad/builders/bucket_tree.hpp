@@ -1,28 +1,29 @@
 #pragma once
-/// Cells that are halved along each of their axes when they hold too many boxes; a box is in every leaf that it
+/// Trees whose cells are split in half on each axis when they hold too many boxes; a box is in every leaf that it
 /// overlaps.
 #include "fase/broad/builders/cell_structure.hpp"
+#include "fase/broad/search/partitioned_search.hpp"
 
 namespace fase::broad {
 
-/// What quadtree and octree share. All boxes are given whole numbers first: the steps (CellFrame) of their lower and
-/// their upper corner. These alone say which leaves a box overlaps, and so do they say which leaf holds the lower
-/// corner of what two boxes have in common: that leaf reports the pair, the others that both are in do not.
+/// The common part of quadtree and octree. First the corners of all boxes are quantized to integer steps (CellFrame).
+/// These steps alone decide which leaves a box overlaps, and which leaf contains the lower corner of the intersection
+/// of two boxes: only that leaf reports the pair.
 ///
-/// A leaf with more boxes than the capacity is split, but not when that does not pay: when the pairs that need not be
-/// tested any more are fewer than the capacity times the entries that arise because boxes lie across the cut. So boxes
-/// in one place, and boxes larger than the cell, end the splitting. And there is never more than `max_entries` entries
-/// a box in the mean, whatever the boxes. Holds up to 2^29 boxes.
+/// A leaf with more boxes than the capacity is split if that reduces the cost: the number of saved pair tests must
+/// exceed the capacity times the number of new entries of straddling boxes. So coincident boxes, and boxes larger than
+/// the cell, end the splitting. The mean number of entries per box is at most `max_entries` for any set of boxes. Holds
+/// up to 2^29 boxes.
 template <int Dim> class BucketTree : public CellStructure<Dim, BucketTree<Dim>> {
 public:
-    /// Entries a box that the tree may have at most, in the mean.
+    /// Largest mean number of entries per box.
     static constexpr std::uint32_t max_entries = 16;
 
-    /// Appends the pairs leaf by leaf.
+    /// Appends all pairs, leaf by leaf.
     void find_pairs(std::vector<Pair>& out) const;
-    /// The same pairs in the same order, found by several threads.
+    /// Finds the same pairs in the same order on several threads.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// The pairs of which one box is awake: branches in which all rest are not looked at.
+    /// Appends the pairs with an awake box. Skips branches in which all boxes sleep.
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     [[nodiscard]] std::size_t bytes() const {
@@ -45,37 +46,38 @@ private:
     using Steps = typename CellFrame<Dim>::Steps;
     static constexpr float cell_margin = 0;
     static constexpr std::uint32_t child_count = 1u << Dim;
-    static constexpr std::uint32_t owned = child_count - 1;  // mark: begins in the leaf along all axes
+    static constexpr std::uint32_t owned = child_count - 1;  // mark of a box that begins in the leaf on all axes
 
-    /// A box in a cell that is yet to be split.
+    /// A box while the tree is built.
     struct Record {
-        std::uint64_t lo, hi;  // steps, 16 bits each; on top of them half of row()
-        /// In store_.ordinary().
+        std::uint64_t lo, hi;  // steps, 16 bits each; the highest 16 bits hold half of row()
+        /// Index in store_.regular().
         [[nodiscard]] std::uint32_t row() const { return static_cast<std::uint32_t>(lo >> 48 | (hi >> 48) << 16); }
     };
-    /// A node that is yet to be split or to become a leaf, and its records.
+    /// A pending node of the build, with its range of records.
     struct Task {
         Path path;
         std::uint32_t node = 0;
         std::uint32_t begin = 0, end = 0;
-        std::uint32_t spare = 0;  // how many entries more there may be below
+        std::uint32_t spare = 0;  // number of additional entries allowed below
     };
     using Counts = std::array<std::uint32_t, child_count>;
 
     Axes axes_;
     Limits limits_;
     std::optional<Aabb> declared_;
-    std::vector<Record> records_;       // those of a task's children stand above its own
-    std::vector<Task> tasks_;           // last in, first out
-    std::vector<std::uint8_t> masks_;   // by record of a task: the children that it goes to
-    std::vector<std::uint32_t> place_;  // by row: its place in the tree
+    std::vector<Record> records_;             // a stack: the records of a task's children follow its own
+    std::vector<Task> tasks_;                 // a stack
+    std::vector<std::uint8_t> masks_;         // by record of a task: the children that it enters
+    std::vector<std::uint32_t> place_;        // by row: its index in the tree
+    mutable ThreadLocalPairBuffers buffers_;  // scratch of find_pairs() with tasks
 
     void rebuild();
     [[nodiscard]] Counts count_children(const Task& task);
-    [[nodiscard]] bool pays(const Task& task, const Counts& counts, std::uint64_t entries) const;
+    [[nodiscard]] bool is_worthwhile(const Task& task, const Counts& counts, std::uint64_t entries) const;
     bool try_split(const Task& task);
     void make_leaf(const Task& task);
-    /// Bit a: the box begins in the cell (or before it, outside the root) along the a-th axis.
+    /// Bit a: the box begins in the cell (or before it, outside the root) on the a-th axis.
     [[nodiscard]] static std::uint32_t mark_of(const Steps& lo, const Path& cell) {
         std::uint32_t mark = 0;
         for (std::size_t a = 0; a < Dim; ++a) mark |= lo[a] >= cell.begin(a) ? 1u << a : 0;

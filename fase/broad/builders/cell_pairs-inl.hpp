@@ -1,18 +1,18 @@
-/// One box against a block of boxes, and which boxes of a tree's leaves have to be tested so. Included inside the
-/// namespace of each target, hence no #pragma once and no includes.
+/// SIMD tests of one box against a block of boxes, and the pair searches in the leaves of a tree. Included inside the
+/// namespace of each SIMD target, hence no #pragma once and no includes.
 
-/// Of which boxes a pass tests pairs. A search for all pairs takes All, one that leaves out pairs of two that rest is
-/// the sum of two passes.
+/// The boxes that a pass tests against each other. A search for all pairs is one pass All; a search for pairs with an
+/// awake box consists of the two other passes.
 enum class Pass { All, AwakeAgainstAll, RestingAgainstAwake };
 
-inline bool asks(Pass pass, const std::uint8_t* awake, std::uint32_t place) {
+inline bool is_query(Pass pass, const std::uint8_t* awake, std::uint32_t place) {
     return pass == Pass::All || (awake[place] != 0) == (pass == Pass::AwakeAgainstAll);
 }
-inline bool answers(Pass pass, const std::uint8_t* awake, std::uint32_t place) {
+inline bool is_candidate(Pass pass, const std::uint8_t* awake, std::uint32_t place) {
     return pass != Pass::RestingAgainstAwake || awake[place] != 0;
 }
 
-/// Up to `capacity` boxes, each bound in a row of its own.
+/// Up to `capacity` boxes in structure-of-arrays layout.
 class Block {
 public:
     static constexpr std::uint32_t capacity = 512;
@@ -30,7 +30,7 @@ public:
         hi_z_[size_] = box.hi.z;
         place_[size_++] = place;
     }
-    /// Reports each box of begin .. end - 1 that overlaps `box`.
+    /// Adds a pair for each box of begin .. end - 1 that overlaps `box`.
     HWY_INLINE void test(const Aabb& box, Proxy proxy, std::uint32_t begin, std::uint32_t end, const Proxy* proxies,
                          PairSink& sink) const {
         const auto lo_x = hn::Set(Tag(), box.lo.x), lo_y = hn::Set(Tag(), box.lo.y), lo_z = hn::Set(Tag(), box.lo.z);
@@ -49,7 +49,7 @@ public:
 private:
     using Tag = hn::CappedTag<float, 16>;
     static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(hn::MaxLanes(Tag()));
-    using Row = std::array<float, capacity + lanes>;  // a vector's length past the end may be read
+    using Row = std::array<float, capacity + lanes>;  // loads may read one vector past the end
 
     alignas(64) Row lo_x_{}, lo_y_{}, lo_z_{}, hi_x_{}, hi_y_{}, hi_z_{};
     std::array<std::uint32_t, capacity> place_{};
@@ -63,22 +63,22 @@ private:
     }
 };
 
-/// Pairs within leaves that hold whatever overlaps their cell.
+/// Pairs within leaves that hold every box that overlaps their cell.
 class PairsInLeaves {
 public:
     PairsInLeaves(const CellTree& tree, std::uint32_t dimensions, PairSink& sink)
         : boxes_(tree.boxes().data()),
           proxies_(tree.proxies().data()),
-          visitors_(tree.visitors().data()),
+          references_(tree.references().data()),
           awake_(tree.awake().data()),
           owned_mark_((1u << dimensions) - 1),
           sink_(sink) {}
 
     void run(const CellTree::Leaf& leaf, bool awake_only) {
-        std::uint32_t i = leaf.first_visitor;
+        std::uint32_t i = leaf.first_reference;
         for (std::uint32_t mark = 0; mark < owned_mark_; ++mark) {
             groups_[mark].begin = i;
-            while (i < leaf.first_visitor + leaf.visitors && visitors_[i].mark() == mark) ++i;
+            while (i < leaf.first_reference + leaf.references && references_[i].mark() == mark) ++i;
             groups_[mark].end = i;
         }
         if (!awake_only) return run_pass<Pass::All>(leaf);
@@ -92,60 +92,60 @@ private:
     };
     const Aabb* boxes_;
     const Proxy* proxies_;
-    const CellTree::Visitor* visitors_;
+    const CellTree::Reference* references_;
     const std::uint8_t* awake_;
     std::uint32_t owned_mark_;
     PairSink& sink_;
-    std::array<Range, 8> groups_;    // of the leaf's visitors, by mark
-    std::array<Range, 8> in_block_;  // the same, as far as they are in the block
+    std::array<Range, 8> groups_;    // ranges of the leaf's references, by mark
+    std::array<Range, 8> in_block_;  // the part of each range that is in the block
     Block block_;
 
-    /// Owned boxes begin in the leaf along all axes, so all of their pairs count. Of two visitors each must begin along
-    /// the axes along which the other does not.
+    /// Owned boxes begin in the leaf on all axes, so all of their pairs are reported here. Two references are a pair of
+    /// this leaf only if each begins on the axes on which the other does not.
     template <Pass pass> void run_pass(const CellTree::Leaf& leaf) {
-        std::uint32_t next_owned = leaf.first, next_visitor = leaf.first_visitor;
-        const std::uint32_t owned_end = leaf.first + leaf.owned, visitor_end = leaf.first_visitor + leaf.visitors;
-        while (next_owned < owned_end || next_visitor < visitor_end) {
+        std::uint32_t next_owned = leaf.first, next_reference = leaf.first_reference;
+        const std::uint32_t owned_end = leaf.first + leaf.owned, reference_end = leaf.first_reference + leaf.references;
+        while (next_owned < owned_end || next_reference < reference_end) {
             block_.clear();
             for (; next_owned < owned_end && !block_.full(); ++next_owned)
-                if (answers(pass, awake_, next_owned)) block_.add(boxes_[next_owned], next_owned);
+                if (is_candidate(pass, awake_, next_owned)) block_.add(boxes_[next_owned], next_owned);
             const std::uint32_t owned = block_.size();
             for (std::uint32_t mark = 0; mark < owned_mark_; ++mark) {
                 in_block_[mark].begin = block_.size();
-                for (; next_visitor < groups_[mark].end && !block_.full(); ++next_visitor) {
-                    const std::uint32_t place = visitors_[next_visitor].place();
-                    if (answers(pass, awake_, place)) block_.add(boxes_[place], place);
+                for (; next_reference < groups_[mark].end && !block_.full(); ++next_reference) {
+                    const std::uint32_t place = references_[next_reference].place();
+                    if (is_candidate(pass, awake_, place)) block_.add(boxes_[place], place);
                 }
                 in_block_[mark].end = block_.size();
             }
             test_owned<pass>(leaf, owned);
-            test_visitors<pass>();
+            test_references<pass>();
         }
     }
-    /// `owned` boxes of the block are the leaf's own.
+    /// The first `owned` boxes of the block are owned by the leaf.
     template <Pass pass> void test_owned(const CellTree::Leaf& leaf, std::uint32_t owned) {
         std::uint32_t later = 0;
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.owned; ++i) {
             while (later < owned && block_.place(later) <= i) ++later;
-            if (asks(pass, awake_, i)) block_.test(boxes_[i], proxies_[i], later, block_.size(), proxies_, sink_);
+            if (is_query(pass, awake_, i)) block_.test(boxes_[i], proxies_[i], later, block_.size(), proxies_, sink_);
         }
     }
-    template <Pass pass> void test_visitors() {
+    template <Pass pass> void test_references() {
         for (std::uint32_t one = 1; one < owned_mark_; ++one) {
             for (std::uint32_t other = one + 1; other < owned_mark_; ++other) {
-                const Range there = in_block_[other];
-                if ((one | other) != owned_mark_ || there.begin == there.end) continue;
+                const Range candidates = in_block_[other];
+                if ((one | other) != owned_mark_ || candidates.begin == candidates.end) continue;
                 for (std::uint32_t i = groups_[one].begin; i < groups_[one].end; ++i) {
-                    const std::uint32_t place = visitors_[i].place();
-                    if (!asks(pass, awake_, place)) continue;
-                    block_.test(boxes_[place], proxies_[place], there.begin, there.end, proxies_, sink_);
+                    const std::uint32_t place = references_[i].place();
+                    if (!is_query(pass, awake_, place)) continue;
+                    block_.test(boxes_[place], proxies_[place], candidates.begin, candidates.end, proxies_, sink_);
                 }
             }
         }
     }
 };
 
-/// Pairs of a leaf and those that come after it, found through the boxes around what nodes hold.
+/// Pairs of a leaf with itself and the leaves after it, found by a traversal that prunes with the bounds of nodes.
 class PairsNearLeaves {
 public:
     PairsNearLeaves(const CellTree& tree, PairSink& sink)
@@ -171,44 +171,44 @@ private:
 
     template <Pass pass> void run_pass(std::uint32_t at) {
         const CellTree::Leaf& leaf = tree_.leaves()[at];
-        const Aabb around = tree_.contents()[leaf.node];
+        const Aabb bounds = tree_.owned_bounds()[leaf.node];
         std::uint32_t next = leaf.first;
         while (next < leaf.first + leaf.owned) {
             block_.clear();
             for (; next < leaf.first + leaf.owned && !block_.full(); ++next)
-                if (answers(pass, awake_, next)) block_.add(boxes_[next], next);
-            if (block_.size() != 0) test_later<pass>(at, around);
+                if (is_candidate(pass, awake_, next)) block_.add(boxes_[next], next);
+            if (block_.size() != 0) test_later<pass>(at, bounds);
         }
     }
-    template <Pass pass> void test_later(std::uint32_t at, const Aabb& around) {
+    template <Pass pass> void test_later(std::uint32_t at, const Aabb& bounds) {
         const CellTree::Node* nodes = tree_.nodes().data();
-        const Aabb* contents = tree_.contents().data();
+        const Aabb* owned_bounds = tree_.owned_bounds().data();
         LocalStack<std::uint32_t, 128> open;
         open.push(CellTree::root);
         while (!open.empty()) {
             const CellTree::Node& node = nodes[open.pop()];
             if (node.is_leaf()) {
-                test_leaf<pass>(tree_.leaves()[node.leaf_begin], node.leaf_begin == at, around);
+                test_leaf<pass>(tree_.leaves()[node.leaf_begin], node.leaf_begin == at, bounds);
                 continue;
             }
             const auto end = node.first_child + static_cast<std::uint32_t>(std::popcount(node.children));
-            open.make_room(16);
+            open.reserve_more(16);
             for (std::uint32_t child = node.first_child; child < end; ++child) {
-                const Aabb& box = contents[child];
-                const int wanted = int(nodes[child].leaf_end > at) & int(box.lo.x <= around.hi.x) &
-                                   int(around.lo.x <= box.hi.x) & int(box.lo.y <= around.hi.y) &
-                                   int(around.lo.y <= box.hi.y) & int(box.lo.z <= around.hi.z) &
-                                   int(around.lo.z <= box.hi.z);
-                open.push_if(wanted != 0 && (pass != Pass::AwakeAgainstAll || nodes[child].awake), child);
+                const Aabb& box = owned_bounds[child];
+                const int overlapping = int(nodes[child].leaf_end > at) & int(box.lo.x <= bounds.hi.x) &
+                                        int(bounds.lo.x <= box.hi.x) & int(box.lo.y <= bounds.hi.y) &
+                                        int(bounds.lo.y <= box.hi.y) & int(box.lo.z <= bounds.hi.z) &
+                                        int(bounds.lo.z <= box.hi.z);
+                open.push_if(overlapping != 0 && (pass != Pass::AwakeAgainstAll || nodes[child].awake), child);
             }
         }
     }
-    template <Pass pass> void test_leaf(const CellTree::Leaf& leaf, bool is_same, const Aabb& around) {
+    template <Pass pass> void test_leaf(const CellTree::Leaf& leaf, bool is_same, const Aabb& bounds) {
         std::uint32_t later = 0;
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.owned; ++i) {
             if (is_same)
                 while (later < block_.size() && block_.place(later) <= i) ++later;
-            if (asks(pass, awake_, i) && overlaps(boxes_[i], around))
+            if (is_query(pass, awake_, i) && overlaps(boxes_[i], bounds))
                 block_.test(boxes_[i], proxies_[i], later, block_.size(), proxies_, sink_);
         }
     }

@@ -1,6 +1,5 @@
 #pragma once
-/// What the structures of halved cells have in common: the boxes as they come, the tree that is made from them,
-/// searches.
+/// The common part of quadtree, octree and loose octree: the store of boxes, the tree built from it, and queries.
 #include <string>
 #include <utility>
 
@@ -10,9 +9,9 @@
 
 namespace fase::broad {
 
-/// The part of the concept Structure that does not depend on how boxes are shared out to cells. A kind adds `info`,
-/// rebuild() and the search for pairs, and hands itself in as `Kind`. Boxes that are not ordinary (is_regular()) stand
-/// beside the tree.
+/// The part of the concept Structure that does not depend on how boxes are distributed to cells (CRTP). A derived class
+/// `Kind` adds `info`, rebuild() and the search for pairs. Unbounded boxes (not is_regular()) are stored outside the
+/// tree.
 template <int Dim, class Kind> class CellStructure {
 public:
     void insert(Proxy p, const Aabb& box) {
@@ -36,14 +35,14 @@ public:
         marks_stale_ = true;
     }
     [[nodiscard]] bool is_awake(Proxy p) const { return store_.is_awake(p); }
-    /// Makes the tree anew when a box has come, moved or gone; refreshes its marks when one has fallen asleep or woken.
+    /// Rebuilds the tree if a box was inserted, moved or erased; updates its marks if a box fell asleep or woke.
     void commit() {
-        const bool boxes = store_.take_changed(), awake = store_.take_awake_changed();
-        if (boxes) static_cast<Kind&>(*this).rebuild();
-        if (boxes || awake) tree_.mark_awake(store_);
+        const bool boxes_changed = store_.take_changed(), awake_changed = store_.take_awake_changed();
+        if (boxes_changed) static_cast<Kind&>(*this).rebuild();
+        if (boxes_changed || awake_changed) tree_.mark_awake(store_);
         stale_ = marks_stale_ = false;
     }
-    /// Replaces all that is stored by these, awake, and commits.
+    /// Replaces all stored boxes by these, all awake, and commits.
     void build(std::span<const Move> boxes) {
         clear();
         for (const Move& m : boxes) insert(m.proxy, m.box);
@@ -51,8 +50,7 @@ public:
     }
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const {
-        bool go_on = store_.traverse_unbounded(region, visit);
-        if (go_on) tree_.traverse(region, visit);
+        if (store_.traverse_unbounded(region, visit)) tree_.traverse(region, visit);
     }
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const {
         if (store_.nearest_unbounded(measure, limit, visit)) tree_.nearest_first(measure, limit, visit);
@@ -64,7 +62,7 @@ public:
         });
         tree_.cull(region, take);
     }
-    /// Owned boxes stand first in each leaf.
+    /// Owned boxes come first in each leaf.
     template <class Visit> void for_each_leaf(Visit&& visit) const {
         std::vector<Proxy> scratch;
         store_.unbounded_leaf(scratch, visit);
@@ -73,16 +71,17 @@ public:
             if (!node.is_leaf()) return;
             const CellTree::Leaf& leaf = tree_.leaves()[node.leaf_begin];
             std::span<const Proxy> proxies = tree_.proxies().subspan(leaf.first, leaf.owned);
-            if (leaf.visitors != 0) {
+            if (leaf.references != 0) {
                 scratch.assign(proxies.begin(), proxies.end());
-                for (const CellTree::Visitor visitor : tree_.visitors().subspan(leaf.first_visitor, leaf.visitors))
-                    scratch.push_back(tree_.proxies()[visitor.place()]);
+                for (const CellTree::Reference reference :
+                     tree_.references().subspan(leaf.first_reference, leaf.references))
+                    scratch.push_back(tree_.proxies()[reference.place()]);
                 proxies = scratch;
             }
             visit(Leaf{frame_.box(path, Kind::cell_margin), proxies, path.depth});
         });
     }
-    /// The cells of all nodes, the root at depth 0, as the path gives them.
+    /// Appends the cells of all nodes, without margin; the root at depth 0.
     void cells(std::vector<DrawnCell>& out) const {
         tree_.walk(CellPath<Dim>{}, [&](std::uint32_t, const CellPath<Dim>& path) {
             out.push_back({frame_.box(path), path.depth});
@@ -93,7 +92,7 @@ public:
     [[nodiscard]] std::size_t nodes() const { return tree_.nodes().size(); }
     [[nodiscard]] std::string broken_invariant() const {
         std::string broken = store_.broken_invariant();
-        if (stale_ || !broken.empty()) return broken;  // the tree is as old as the last commit
+        if (stale_ || !broken.empty()) return broken;  // the tree is that of the last commit
         broken = tree_.broken_invariant(store_, !marks_stale_);
         return broken.empty() ? static_cast<const Kind&>(*this).broken_cells() : broken;
     }
@@ -106,7 +105,7 @@ protected:
     CellTree tree_;
 
 private:
-    bool stale_ = false, marks_stale_ = false;  // the tree; whether its boxes are awake
+    bool stale_ = false, marks_stale_ = false;  // tree and awake marks, since the last commit
 };
 
 }  // namespace fase::broad

@@ -1,4 +1,4 @@
-/// Boxes along a curve that fills space, and where to cut them in two there.
+/// Sorts boxes along the Morton curve by a radix sort.
 #include "fase/broad/builders/morton_order.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 constexpr int digit_bits = 12, digits = 4;  // 48 bits in all
 constexpr std::size_t buckets = std::size_t{1} << digit_bits;
 
-/// The 16 bits of `value` with two zeros between each and the next.
+/// Inserts two zero bits after each of the 16 bits of `value`.
 constexpr std::uint64_t spread(std::uint64_t value) {
     value = (value | value << 16) & 0x0000ff0000ffull;
     value = (value | value << 8) & 0x00f00f00f00full;
@@ -31,8 +31,7 @@ void sort_by_morton(std::span<const BuildItem> items, std::vector<MortonKey>& ke
         const Vec3 c = item.box.lo + item.box.hi;
         centres = merge(centres, {c, c});
     }
-    const Vec3 e = extent(centres);
-    const float side = std::max(e.x, std::max(e.y, e.z));
+    const float side = longest_side(centres);
     const float scale = side > 0 ? 65535.0f / side : 0.0f;
     const float cells = scale < Aabb::infinity ? scale : 0.0f;
     keys.resize(items.size());
@@ -47,9 +46,10 @@ void sort_by_morton(std::span<const BuildItem> items, std::vector<MortonKey>& ke
     }
     for (int digit = 0; digit < digits; ++digit) {
         auto& count = counts[static_cast<std::size_t>(digit)];
-        if (items.empty() || count[digit_of(keys[0].code, digit)] == items.size()) continue;  // all the same
+        if (items.empty() || count[digit_of(keys[0].code, digit)] == items.size())
+            continue;  // all keys have the same digit
         std::uint32_t sum = 0;
-        for (std::uint32_t& one : count) sum += std::exchange(one, sum);
+        for (std::uint32_t& start : count) sum += std::exchange(start, sum);
         for (const MortonKey& key : keys) scratch[count[digit_of(key.code, digit)]++] = key;
         keys.swap(scratch);
     }

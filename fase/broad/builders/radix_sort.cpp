@@ -1,4 +1,4 @@
-/// Eleven bits a pass, the lowest first; passes in which all items agree are left out.
+/// LSD radix sort with eleven bits per pass; skips passes in which all items have the same digit.
 #include "fase/broad/builders/radix_sort.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-/// The plane of least surface, from counts and bounds of boxes that begin and that end in each of a few bins.
+/// Finds the best plane from counts and bounds of the boxes that begin and end in each bin.
 #include "fase/broad/builders/surface_plane.hpp"
 
 #include <algorithm>
@@ -11,13 +11,13 @@ namespace {
 
 constexpr int max_bins = 32;
 
-/// Boxes that begin, or that end, in a bin or in all up to it.
+/// Boxes that begin, or end, in one bin or in a range of bins.
 struct Bin {
     Aabb box;
     std::size_t count = 0;
-    void add(const Aabb& more, std::size_t how_many) {
-        box = merge(box, more);
-        count += how_many;
+    void add(const Aabb& added, std::size_t added_count) {
+        box = merge(box, added);
+        count += added_count;
     }
 };
 using Bins = std::array<Bin, max_bins>;
@@ -26,7 +26,7 @@ double cost_of(const Aabb& box, std::size_t count) {
     return count == 0 ? 0 : static_cast<double>(count) * static_cast<double>(box_cost(box));
 }
 
-/// Evenly spaced bins along an axis. A box that ends on a border ends in the bin before it.
+/// Evenly spaced bins on an axis. A box that ends on a border ends in the bin before it.
 struct Binning {
     int axis = 0, bins = 0;
     float first = 0, bins_per_metre = 0;
@@ -53,14 +53,13 @@ void try_axis(const Binning& binning, std::span<const Move> boxes, const Aabb& b
         begin[binning.begin_of(m.box)].add(m.box, 1);
         end[binning.end_of(m.box)].add(m.box, 1);
     }
-    // In place: begin[i] and end[i] become sums from the end at which they are needed.
-    Bins ends_from;  // that end in bin i or later
+    Bins ends_from;  // [i]: boxes that end in bin i or later
     Bin sum;
     for (std::size_t i = bins; i-- > 0;) {
         sum.add(end[i].box, end[i].count);
         ends_from[i] = sum;
     }
-    Bins begins_from;  // that begin in bin i or later
+    Bins begins_from;  // [i]: boxes that begin in bin i or later
     sum = {};
     for (std::size_t i = bins; i-- > 0;) {
         sum.add(begin[i].box, begin[i].count);
@@ -71,12 +70,13 @@ void try_axis(const Binning& binning, std::span<const Move> boxes, const Aabb& b
         below.add(end[cut - 1].box, end[cut - 1].count);
         begun.add(begin[cut - 1].box, begin[cut - 1].count);
         const Bin& above = begins_from[cut];
-        const std::size_t astride = boxes.size() - below.count - above.count;
-        if (std::max({below.count, above.count, astride}) == boxes.size()) continue;
-        Aabb slab = bounds;  // those astride begin before the cut and end after it
+        const std::size_t straddling = boxes.size() - below.count - above.count;
+        if (std::max({below.count, above.count, straddling}) == boxes.size()) continue;
+        Aabb slab = bounds;  // straddling boxes begin before the cut and end after it
         slab.lo[axis] = ends_from[cut].box.lo[axis];
         slab.hi[axis] = begun.box.hi[axis];
-        const double cost = cost_of(below.box, below.count) + cost_of(slab, astride) + cost_of(above.box, above.count);
+        const double cost =
+            cost_of(below.box, below.count) + cost_of(slab, straddling) + cost_of(above.box, above.count);
         if (best && cost >= best->cost) continue;
         const float at = below.count != 0 ? below.box.hi[axis] : above.box.lo[axis];
         best = {{axis, at}, cost};

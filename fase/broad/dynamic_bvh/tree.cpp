@@ -1,4 +1,4 @@
-/// The tree's own operations: a leaf in, a leaf out, boxes refitted upwards, rotations.
+/// Operations on the tree: insertion and removal of leaves, refitting, rotations.
 #include "fase/broad/dynamic_bvh.hpp"
 #include "fase/core/hash.hpp"
 
@@ -16,12 +16,12 @@ void DynamicBvh::set_content(Slot slot, const Aabb& box, std::uint32_t link) {
 }
 
 void DynamicBvh::swap_content(Slot a, Slot b) {
-    const Node was_a = nodes_[a], was_b = nodes_[b];
-    set_content(a, was_b.box, was_b.link);
-    set_content(b, was_a.box, was_a.link);
+    const Node old_a = nodes_[a], old_b = nodes_[b];
+    set_content(a, old_b.box, old_b.link);
+    set_content(b, old_a.box, old_a.link);
 }
 
-DynamicBvh::Slot DynamicBvh::take_pair() {
+DynamicBvh::Slot DynamicBvh::allocate_pair() {
     if (!free_.empty()) {
         const Slot pair = free_.back();
         free_.pop_back();
@@ -32,11 +32,11 @@ DynamicBvh::Slot DynamicBvh::take_pair() {
     return pair;
 }
 
-/// The node beside which a new leaf makes the tree's surface grow least.
+/// Returns the node whose sibling a new leaf should become: that with the least growth of surface. Branch and bound.
 DynamicBvh::Slot DynamicBvh::best_sibling(Proxy p, const Aabb& box) const {
     struct Candidate {
         Slot slot;
-        float growth_above;  // of all ancestors, when the leaf comes somewhere below
+        float growth_above;  // sum over all ancestors, if the leaf is inserted below
     };
     const float own = box_cost(box);
     Slot best = root;
@@ -61,8 +61,8 @@ DynamicBvh::Slot DynamicBvh::best_sibling(Proxy p, const Aabb& box) const {
         for (const Candidate& next : {below[left_first ? 1 : 0], below[left_first ? 0 : 1]})
             if (!nodes_[next.slot].is_leaf() && next.growth_above + own < best_cost) open.push(next);
     }
-    // Where going deeper costs the same (boxes in one place), a coin sends the leaf down: a chain would be as deep as
-    // long.
+    // Where a deeper insertion costs the same (coincident boxes), a random walk sends the leaf down; otherwise the
+    // nodes would form a chain.
     for (std::uint64_t coin = mix_bits(p + 1ull); !nodes_[best].is_leaf(); coin = mix_bits(coin)) {
         const Slot child = nodes_[best].link + static_cast<Slot>(coin & 1);
         const Aabb& now = nodes_[best].box;
@@ -80,7 +80,7 @@ void DynamicBvh::insert_leaf(Proxy p, const Aabb& fat) {
         return;
     }
     const Slot sibling = best_sibling(p, fat);
-    const Slot pair = take_pair();
+    const Slot pair = allocate_pair();
     const Node old = nodes_[sibling];
     set_content(pair, old.box, old.link);
     set_content(pair + 1, fat, leaf_bit | p);
@@ -107,7 +107,8 @@ void DynamicBvh::remove_leaf(Slot leaf) {
     }
 }
 
-/// From `slot` to the root; stops early once neither a node nor its child has changed, for then nothing above can.
+/// Refits from `slot` to the root. Stops early when a node and its child are both unchanged, as then nothing above can
+/// change.
 void DynamicBvh::refit_upwards(Slot slot) {
     for (int unchanged = 0; unchanged < 2;) {
         const Aabb box = merged_children(nodes_[slot]);
@@ -120,8 +121,8 @@ void DynamicBvh::refit_upwards(Slot slot) {
     }
 }
 
-/// Swaps a child with a grandchild on the other side, or two grandchildren, when that makes the children's surface
-/// smaller: the best of six ways. The node's own box stays as it is.
+/// Swaps a child with a grandchild of the other side, or two grandchildren, if that reduces the surface of the
+/// children: the best of six swaps. The box of the node itself does not change.
 bool DynamicBvh::rotate(Slot slot) {
     const Slot left = nodes_[slot].link, right = left + 1;
     const Node &l = nodes_[left], &r = nodes_[right];

@@ -1,27 +1,27 @@
-/// What only reads the tree: all pairs, checks, drawing.
+/// Read-only functions of the tree: all pairs, cost, checks, drawing.
 #include <algorithm>
 
 #include "fase/broad/dynamic_bvh.hpp"
 
 namespace fase::broad {
-/// A simultaneous descent into two trees, or into one tree twice: pairs of nodes that overlap and have yet to be
-/// opened, and pairs of leaves whose exact boxes have yet to be tested.
+/// A simultaneous descent of two trees, or of one tree against itself: keeps overlapping pairs of nodes that are not
+/// expanded yet, and pairs of leaves whose exact boxes are not tested yet.
 template <bool AwakeOnly> class DynamicBvh::Descent {
 public:
     Descent(const DynamicBvh& one, const DynamicBvh& two, PairSink& sink) : one_(one), two_(two), sink_(sink) {}
     Descent(const Descent&) = delete;
     Descent& operator=(const Descent&) = delete;
 
-    /// All pairs below two nodes that overlap, or below a node and itself.
+    /// Finds all pairs below two overlapping nodes, or below one node.
     void run(NodePair start) {
         begin(start);
-        while (!open_.empty()) open_one();
+        while (!open_.empty()) expand_one();
         test_leaves();
     }
-    /// Goes one level down and appends what is left to do.
+    /// Expands one level and appends the remaining node pairs.
     void split(NodePair start, std::vector<NodePair>& parts) {
         begin(start);
-        if (!open_.empty()) open_one();
+        if (!open_.empty()) expand_one();
         while (!open_.empty()) parts.push_back(open_.pop());
         test_leaves();
     }
@@ -34,27 +34,27 @@ private:
     std::array<NodePair, 256> leaves_;
     std::size_t leaf_count_ = 0;
 
-    void make_room() {
-        open_.make_room(4);
+    void reserve_stacks() {
+        open_.reserve_more(4);
         if (leaf_count_ + 4 > leaves_.size()) test_leaves();
     }
     void begin(NodePair start) {
-        make_room();
+        reserve_stacks();
         add_if(true, start);
     }
-    /// With AwakeOnly both trees are one, and its marks are there.
+    /// With AwakeOnly, both trees are the same, and its marks are valid.
     [[nodiscard]] bool any_awake(NodePair pair) const {
         return (one_.node_awake_[pair.a] | two_.node_awake_[pair.b]) != 0;
     }
-    void add_if(bool wanted, NodePair pair) {
-        if constexpr (AwakeOnly) wanted = wanted && any_awake(pair);
+    void add_if(bool overlapping, NodePair pair) {
+        if constexpr (AwakeOnly) overlapping = overlapping && any_awake(pair);
         const bool both_leaves = (one_.nodes_[pair.a].link & two_.nodes_[pair.b].link & leaf_bit) != 0;
         leaves_[leaf_count_] = pair;
-        leaf_count_ += wanted && both_leaves ? 1 : 0;
-        open_.push_if(wanted && !both_leaves, pair);
+        leaf_count_ += overlapping && both_leaves ? 1 : 0;
+        open_.push_if(overlapping && !both_leaves, pair);
     }
-    void open_one() {
-        make_room();
+    void expand_one() {
+        reserve_stacks();
         const NodePair pair = open_.pop();
         const Node& a = one_.nodes_[pair.a];
         const Node& b = two_.nodes_[pair.b];
@@ -84,13 +84,13 @@ private:
     }
 };
 
-/// The pairs that have a box kept apart.
-template <bool AwakeOnly> void DynamicBvh::find_pairs_apart(PairSink& sink) const {
-    for (const Proxy p : apart_) {
+/// Finds the pairs with an unbounded box.
+template <bool AwakeOnly> void DynamicBvh::find_unbounded_pairs(PairSink& sink) const {
+    for (const Proxy p : unbounded_) {
         traverse(BoxRegion{entries_[p].box}, [&](Proxy q, const Aabb&) {
             if (AwakeOnly && !entries_[p].awake && !entries_[q].awake) return true;
-            const bool both_apart = entries_[q].place == Place::Apart;
-            if (!both_apart || p < q) sink.add(p, q);
+            const bool both_unbounded = entries_[q].place == Place::Unbounded;
+            if (!both_unbounded || p < q) sink.add(p, q);
             return true;
         });
     }
@@ -98,24 +98,24 @@ template <bool AwakeOnly> void DynamicBvh::find_pairs_apart(PairSink& sink) cons
 
 void DynamicBvh::find_pairs(std::vector<Pair>& out) const {
     PairSink sink(out);
-    find_pairs_apart<false>(sink);
+    find_unbounded_pairs<false>(sink);
     if (leaf_count_ > 1) Descent<false>(*this, *this, sink).run({root, root});
 }
 
 void DynamicBvh::find_awake_pairs(std::vector<Pair>& out) const {
     if (resting_ == 0) return find_pairs(out);
     PairSink sink(out);
-    find_pairs_apart<true>(sink);
+    find_unbounded_pairs<true>(sink);
     if (leaf_count_ > 1) Descent<true>(*this, *this, sink).run({root, root});
 }
 
 void DynamicBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    constexpr std::size_t wanted_parts = 512;
+    constexpr std::size_t min_parts = 512;
     PairSink sink(out);
-    find_pairs_apart<false>(sink);
-    std::vector<NodePair> parts, next;  // always the whole descent, in finer and finer parts
+    find_unbounded_pairs<false>(sink);
+    std::vector<NodePair> parts, next;  // together always the complete descent, in finer and finer parts
     if (leaf_count_ > 1) parts.push_back({root, root});
-    while (!parts.empty() && parts.size() < wanted_parts) {
+    while (!parts.empty() && parts.size() < min_parts) {
         next.clear();
         Descent<false> descent(*this, *this, sink);
         for (const NodePair& part : parts) descent.split(part, next);
@@ -133,14 +133,14 @@ void DynamicBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
 void DynamicBvh::find_pairs_with(const DynamicBvh& other, std::vector<Pair>& out) const {
     if (&other == this) return find_pairs(out);
     PairSink sink(out);
-    for (const Proxy p : apart_) {
+    for (const Proxy p : unbounded_) {
         other.traverse(BoxRegion{entries_[p].box}, [&](Proxy q, const Aabb&) {
             if (p != q) sink.add(p, q);
             return true;
         });
     }
     if (leaf_count_ == 0) return;
-    for (const Proxy q : other.apart_) {
+    for (const Proxy q : other.unbounded_) {
         traverse(BoxRegion{other.entries_[q].box}, [&](Proxy p, const Aabb&) {
             if (p != q && entries_[p].place == Place::Tree) sink.add(p, q);
             return true;
@@ -152,8 +152,8 @@ void DynamicBvh::find_pairs_with(const DynamicBvh& other, std::vector<Pair>& out
 
 std::size_t DynamicBvh::bytes() const {
     return sizeof(*this) + nodes_.capacity() * sizeof(Node) + entries_.capacity() * sizeof(Entry) +
-           (free_.capacity() + order_.capacity()) * sizeof(Slot) + node_awake_.capacity() +
-           (pending_.capacity() + apart_.capacity()) * sizeof(Proxy) + leaving_.capacity() * sizeof(Leaving) +
+           (free_.capacity() + refit_order_.capacity()) * sizeof(Slot) + node_awake_.capacity() +
+           (pending_.capacity() + unbounded_.capacity()) * sizeof(Proxy) + escaped_.capacity() * sizeof(Escaped) +
            items_.capacity() * sizeof(BuildItem);
 }
 
@@ -169,8 +169,8 @@ double DynamicBvh::cost() const {
         open.push(node.link);
         open.push(node.link + 1);
     }
-    const double whole = box_cost(nodes_[root].box);
-    return whole > 0 ? sum / whole : static_cast<double>(leaf_count_ - 1);
+    const double root_area = box_cost(nodes_[root].box);
+    return root_area > 0 ? sum / root_area : static_cast<double>(leaf_count_ - 1);
 }
 
 void DynamicBvh::cells(std::vector<DrawnCell>& out) const {
@@ -198,34 +198,34 @@ std::string DynamicBvh::broken_invariant() const {
         const Slot at = open.pop();
         const Node& node = nodes_[at];
         if (slots++ > nodes_.size()) return "a node is reached twice";
-        if (!marks_old_ && !node_awake_.empty()) {
+        if (!marks_stale_ && !node_awake_.empty()) {
             const bool below = node.is_leaf() ? entries_[node.proxy()].awake
                                               : (node_awake_[node.link] | node_awake_[node.link + 1]) != 0;
-            if (below != (node_awake_[at] != 0)) return "a node does not know whether anything below is awake";
+            if (below != (node_awake_[at] != 0)) return "the awake mark of a node is wrong";
         }
         if (node.is_leaf()) {
             ++leaves;
             const Entry& entry = entries_[node.proxy()];
             if (entry.place != Place::Tree || entry.where != at) return "a leaf is not where its proxy points";
-            if (!entry.leaving && !contains(node.box, entry.box)) return "a box sticks out of its fat box";
+            if (!entry.escaped && !contains(node.box, entry.box)) return "a box exceeds its fat AABB";
             continue;
         }
         for (const Slot child : {node.link, node.link + 1}) {
-            if (child >= nodes_.size()) return "a child lies outside the pool";
-            if (nodes_[child].parent != at) return "a child does not know its parent";
+            if (child >= nodes_.size()) return "a child is at an invalid index";
+            if (nodes_[child].parent != at) return "a child has a wrong parent";
             open.push(child);
         }
         if (!(merged_children(node) == node.box)) return "an inner node is not the union of its children";
     }
-    if (leaves != leaf_count_) return "the leaves do not count up";
+    if (leaves != leaf_count_) return "the number of leaves is wrong";
     const std::size_t unused = leaf_count_ == 0 ? 0 : 1;
     if (slots + unused + 2 * free_.size() != nodes_.size()) return "slots of the pool are lost";
     for (const Entry& entry : entries_) in_tree += entry.place == Place::Tree ? 1 : 0;
-    if (in_tree != leaves) return "a proxy points into the tree and is not there";
-    for (const auto* list : {&pending_, &apart_})
+    if (in_tree != leaves) return "a proxy points to a missing leaf";
+    for (const auto* list : {&pending_, &unbounded_})
         for (std::size_t i = 0; i < list->size(); ++i) {
             const Entry& entry = entries_[(*list)[i]];
-            if (entry.place != (list == &apart_ ? Place::Apart : Place::Pending) || entry.where != i)
+            if (entry.place != (list == &unbounded_ ? Place::Unbounded : Place::Pending) || entry.where != i)
                 return "a box outside the tree is not where its proxy points";
         }
     return {};

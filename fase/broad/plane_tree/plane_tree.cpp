@@ -1,4 +1,4 @@
-/// How a tree of planes is built, and how it learns what rests.
+/// Builds a plane tree and marks its awake nodes.
 #include "fase/broad/plane_tree/plane_tree.hpp"
 
 #include <bit>
@@ -8,27 +8,27 @@ namespace fase::broad {
 
 void PlaneTree::insert(Proxy p, const Aabb& box) {
     store_.insert(p, box);
-    pending_ = true;
+    boxes_changed_ = true;
 }
 
 void PlaneTree::move(Proxy p, const Aabb& box) {
     store_.move(p, box);
-    pending_ = true;
+    boxes_changed_ = true;
 }
 
 void PlaneTree::erase(Proxy p) {
     store_.erase(p);
-    pending_ = true;
+    boxes_changed_ = true;
 }
 
 void PlaneTree::set_awake(Proxy p, bool awake) {
     store_.set_awake(p, awake);
-    marks_old_ = true;
+    awake_changed_ = true;
 }
 
 void PlaneTree::clear() {
     store_.clear();
-    pending_ = true;
+    boxes_changed_ = true;
     nodes_.clear();
     entries_.clear();
     proxies_.clear();
@@ -41,9 +41,9 @@ void PlaneTree::build_by(std::span<const Move> boxes, ChoosePlane choose) {
 }
 
 void PlaneTree::commit_by(ChoosePlane choose) {
-    marks_old_ |= pending_;
-    if (std::exchange(pending_, false)) build_tree(choose);
-    if (std::exchange(marks_old_, false)) mark_awake();
+    awake_changed_ |= boxes_changed_;
+    if (std::exchange(boxes_changed_, false)) build_tree(choose);
+    if (std::exchange(awake_changed_, false)) mark_awake();
 }
 
 void PlaneTree::build_tree(ChoosePlane choose) {
@@ -52,12 +52,12 @@ void PlaneTree::build_tree(ChoosePlane choose) {
     planes_.clear();
     proxies_.clear();
     if (entries_.empty()) return;
-    Node whole{.first = 0, .count = static_cast<std::uint32_t>(entries_.size())};
-    for (const Move& m : entries_) whole.box = merge(whole.box, m.box);
-    nodes_.push_back(whole);
+    Node all{.first = 0, .count = static_cast<std::uint32_t>(entries_.size())};
+    for (const Move& m : entries_) all.box = merge(all.box, m.box);
+    nodes_.push_back(all);
     planes_.push_back({});
-    // A rule that has gone this deep goes nowhere: from there on, every cut must tell an eighth apart.
-    const int patience = 2 * static_cast<int>(std::bit_width(entries_.size())) + 8;
+    // Below this depth the rule of the structure has failed; there every split must separate an eighth of the boxes.
+    const int max_rule_depth = 2 * static_cast<int>(std::bit_width(entries_.size())) + 8;
     to_build_.clear();
     scratch_.reserve(entries_.size());
     to_build_.push_back({root, 0});
@@ -67,15 +67,16 @@ void PlaneTree::build_tree(ChoosePlane choose) {
         const Node node = nodes_[at.node];
         const auto boxes = std::span(entries_).subspan(node.first, node.count);
         std::optional<BoxPlane> plane = choose({boxes, node.box, at.depth});
-        if (plane && at.depth > patience) plane = halving_plane(boxes, scratch_);
-        if (!plane || !cut_leaf(at.node, *plane)) continue;
-        const Node& cut = nodes_[at.node];
-        for (NodeIndex child = cut.first + cut.count; child-- > cut.first;) to_build_.push_back({child, at.depth + 1});
+        if (plane && at.depth > max_rule_depth) plane = halving_plane(boxes, scratch_);
+        if (!plane || !split_leaf(at.node, *plane)) continue;
+        const Node& inner = nodes_[at.node];
+        for (NodeIndex child = inner.first + inner.count; child-- > inner.first;)
+            to_build_.push_back({child, at.depth + 1});
     }
     for (const Move& m : entries_) proxies_.push_back(m.proxy);
 }
 
-bool PlaneTree::cut_leaf(NodeIndex leaf, const BoxPlane& plane) {
+bool PlaneTree::split_leaf(NodeIndex leaf, const BoxPlane& plane) {
     const Node node = nodes_[leaf];
     Move* const boxes = entries_.data() + node.first;
     std::array<Aabb, 3> bounds;
@@ -108,7 +109,7 @@ bool PlaneTree::cut_leaf(NodeIndex leaf, const BoxPlane& plane) {
     return true;
 }
 
-/// Children stand behind their parents, so one pass from the end does; none while everything is awake.
+/// One pass from the last node to the first, as children follow their parents. Clears the marks while all are awake.
 void PlaneTree::mark_awake() {
     node_awake_.clear();
     entry_awake_.clear();
@@ -122,7 +123,7 @@ void PlaneTree::mark_awake() {
     }
 }
 
-PlaneTree::Row PlaneTree::entries_below(NodeIndex node) const {
+PlaneTree::EntryRange PlaneTree::entries_below(NodeIndex node) const {
     NodeIndex first = node, last = node;
     while (!nodes_[first].leaf) first = nodes_[first].first;
     while (!nodes_[last].leaf) last = nodes_[last].first + nodes_[last].count - 1;

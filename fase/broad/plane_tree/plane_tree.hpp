@@ -1,5 +1,5 @@
 #pragma once
-/// A tree of planes that is made anew whenever a box has moved: what the kD-tree and the BSP tree share.
+/// A tree of splitting planes, rebuilt after any change of a box: the common part of the k-d tree and the BSP tree.
 #include <array>
 #include <optional>
 #include <span>
@@ -13,11 +13,12 @@
 
 namespace fase::broad {
 
-/// A node cuts its boxes by a plane and has up to three children: the boxes below the plane, those above, and those
-/// astride, which are cut further by planes of other axes. So each box is stored once, memory is O(n) for any set, and
-/// nothing has to be told apart twice. Nodes are fitted to their boxes; a subtree's boxes lie in one row. Boxes that no
-/// plane tells apart end in one leaf, and odd boxes (infinite, NaN, inverted, beyond 1e17 m) are kept apart in a list.
-/// Any change makes the next commit() build all anew: meant for what stands still. No memory is taken once warm.
+/// A node splits its boxes by a plane and has up to three children: the boxes below the plane, those above, and those
+/// straddling it, which planes of other axes split further. So each box is stored once, memory is O(n) for any set, and
+/// queries need no removal of duplicates. Node bounds are fitted to their boxes; the boxes of a subtree are contiguous.
+/// Boxes that no plane separates share one leaf. Unbounded boxes (infinite, NaN, inverted, beyond 1e17 m) are in a
+/// separate list. Any change makes the next commit() rebuild the tree: meant for static boxes. Does not allocate once
+/// warm.
 class PlaneTree {
 public:
     void insert(Proxy p, const Aabb& box);
@@ -29,15 +30,15 @@ public:
 
     template <Region R, class Visit> void traverse(const R& region, Visit&& visit) const;
 
-    /// All pairs by descending the tree against itself.
+    /// Finds all pairs by a descent of the tree against itself.
     void find_pairs(std::vector<Pair>& out) const;
-    /// The same pairs, found by several threads; in an order that does not depend on how many.
+    /// Finds the same pairs on several threads, in an order that does not depend on their number.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const;
-    /// The pairs of which one box is awake: branches in which all rest are not opened against each other.
+    /// Finds the pairs with an awake box. Does not test two branches in which all boxes sleep against each other.
     void find_awake_pairs(std::vector<Pair>& out) const;
 
     template <Measure M, class Visit> void nearest_first(const M& measure, float limit, Visit&& visit) const;
-    /// Takes a branch that is wholly inside in one call.
+    /// Passes a branch that is completely inside in one call.
     template <SolidRegion R, class Take> void cull(const R& region, Take&& take) const;
     template <class Visit> void for_each_leaf(Visit&& visit) const;
 
@@ -45,18 +46,18 @@ public:
     [[nodiscard]] std::size_t nodes() const { return nodes_.empty() ? 1 : nodes_.size(); }
     [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] std::string broken_invariant() const;
-    /// All nodes, each fitted to its boxes; the root at depth 0.
+    /// Appends all nodes, each fitted to its boxes; the root at depth 0.
     void cells(std::vector<DrawnCell>& out) const;
 
 protected:
-    /// A node's boxes, which may be reordered, their bounds, and how deep the node is.
-    struct Plan {
+    /// A node during the build: its boxes, which may be reordered, their bounds and the depth.
+    struct NodeBoxes {
         std::span<Move> boxes;
         Aabb bounds;
         int depth = 0;
     };
-    /// Where to cut; nullopt: the boxes shall stay together.
-    using ChoosePlane = FunctionRef<std::optional<BoxPlane>(const Plan&)>;
+    /// Returns the splitting plane; nullopt: the node becomes a leaf.
+    using ChoosePlane = FunctionRef<std::optional<BoxPlane>(const NodeBoxes&)>;
 
     PlaneTree() = default;
     ~PlaneTree() = default;
@@ -65,7 +66,7 @@ protected:
     PlaneTree(PlaneTree&&) = default;
     PlaneTree& operator=(PlaneTree&&) = default;
 
-    /// Builds anew when anything has changed.
+    /// Rebuilds the tree if a box has changed.
     void commit_by(ChoosePlane choose);
     void build_by(std::span<const Move> boxes, ChoosePlane choose);
     [[nodiscard]] std::vector<float>& scratch() { return scratch_; }
@@ -76,7 +77,7 @@ private:
 
     struct Node {
         Aabb box;                 // the merged boxes below
-        std::uint32_t first = 0;  // leaf: place of its first entry; inner: its first child, the others follow
+        std::uint32_t first = 0;  // leaf: index of its first entry; inner: its first child, the others follow
         std::uint32_t count : 31 = 0;
         std::uint32_t leaf : 1 = 1;
     };
@@ -87,27 +88,27 @@ private:
         NodeIndex node;
         int depth;
     };
-    struct Row {
+    struct EntryRange {
         std::size_t first = 0, count = 0;
     };
 
     BoxStore store_;
-    bool pending_ = false, marks_old_ = false;  // since commit(): boxes, who is awake
+    bool boxes_changed_ = false, awake_changed_ = false;  // since commit()
     std::vector<Node> nodes_;
-    std::vector<BoxPlane> planes_;           // of the same node; of leaves: none
+    std::vector<BoxPlane> planes_;           // by node; unused for leaves
     std::vector<Move> entries_;              // in the order of the leaves
-    std::vector<Proxy> proxies_;             // of entries_
-    std::vector<std::uint8_t> node_awake_;   // of nodes_: is anything below awake? Empty when nothing rests
-    std::vector<std::uint8_t> entry_awake_;  // of entries_; empty when nothing rests
-    std::vector<float> scratch_;             // of build
-    std::vector<Branch> to_build_;           // of build
+    std::vector<Proxy> proxies_;             // by entry
+    std::vector<std::uint8_t> node_awake_;   // by node: is anything below awake? Empty when all boxes are awake
+    std::vector<std::uint8_t> entry_awake_;  // by entry; empty when all boxes are awake
+    std::vector<float> scratch_;             // of the build
+    std::vector<Branch> to_build_;           // of the build
 
     void build_tree(ChoosePlane choose);
-    /// Cuts a leaf in two or three; false: it stays one.
-    bool cut_leaf(NodeIndex leaf, const BoxPlane& plane);
+    /// Splits a leaf into two or three children; false: it remains a leaf.
+    bool split_leaf(NodeIndex leaf, const BoxPlane& plane);
     void mark_awake();
-    /// The entries of a subtree.
-    [[nodiscard]] Row entries_below(NodeIndex node) const;
+    /// Returns the entries of a subtree.
+    [[nodiscard]] EntryRange entries_below(NodeIndex node) const;
     [[nodiscard]] std::string broken_node(NodeIndex node) const;
 
     template <bool AwakeOnly> class Descent;
@@ -134,49 +135,49 @@ template <Region R, class Visit> void PlaneTree::traverse(const R& region, Visit
 }
 
 template <Measure M, class Visit> void PlaneTree::nearest_first(const M& measure, float limit, Visit&& visit) const {
-    const auto look_at = [&](const Move& m) {
-        const float at = measure.at(m.box, limit);
-        if (!(at < beyond)) return true;
-        const float wanted = visit(m.proxy, m.box, at);
-        limit = wanted < limit ? wanted : limit;
+    const auto visit_box = [&](const Move& m) {
+        const float distance = measure.distance(m.box, limit);
+        if (!(distance < infinite_distance)) return true;
+        const float new_limit = visit(m.proxy, m.box, distance);
+        limit = new_limit < limit ? new_limit : limit;
         return limit >= 0;
     };
     for (const Move& m : store_.unbounded())
-        if (!look_at(m)) return;
+        if (!visit_box(m)) return;
     if (nodes_.empty()) return;
     struct Near {
         NodeIndex node;
-        float at;
+        float distance;
     };
     LocalStack<Near, 64> open;
-    open.push({root, measure.at(nodes_[root].box, limit)});
+    open.push({root, measure.distance(nodes_[root].box, limit)});
     while (!open.empty()) {
         const Near branch = open.pop();
-        if (!(branch.at <= limit) || branch.at == beyond) continue;
+        if (!(branch.distance <= limit) || branch.distance == infinite_distance) continue;
         const Node node = nodes_[branch.node];
         if (node.leaf) {
             for (std::size_t i = node.first; i < node.first + node.count; ++i)
-                if (!look_at(entries_[i])) return;
+                if (!visit_box(entries_[i])) return;
             continue;
         }
-        std::array<Near, 3> children;  // the farthest first
+        std::array<Near, 3> children;  // farthest first
         std::size_t count = 0;
         for (NodeIndex child = node.first; child < node.first + node.count; ++child) {
-            const float at = measure.at(nodes_[child].box, limit);
-            if (!(at < beyond)) continue;
+            const float distance = measure.distance(nodes_[child].box, limit);
+            if (!(distance < infinite_distance)) continue;
             std::size_t place = count++;
-            for (; place > 0 && children[place - 1].at < at; --place) children[place] = children[place - 1];
-            children[place] = {child, at};
+            for (; place > 0 && children[place - 1].distance < distance; --place) children[place] = children[place - 1];
+            children[place] = {child, distance};
         }
         for (std::size_t i = 0; i < count; ++i) open.push(children[i]);
     }
 }
 
 template <SolidRegion R, class Take> void PlaneTree::cull(const R& region, Take&& take) const {
-    const auto sort_out = [&](const Move& m) {
+    const auto classify = [&](const Move& m) {
         if (region.touches(m.box)) take(std::span<const Proxy>(&m.proxy, 1), region.contains(m.box));
     };
-    for (const Move& m : store_.unbounded()) sort_out(m);
+    for (const Move& m : store_.unbounded()) classify(m);
     LocalStack<NodeIndex, 64> open;
     if (!nodes_.empty()) open.push(root);
     while (!open.empty()) {
@@ -184,10 +185,10 @@ template <SolidRegion R, class Take> void PlaneTree::cull(const R& region, Take&
         const Node node = nodes_[at];
         if (!region.touches(node.box)) continue;
         if (region.contains(node.box)) {
-            const Row row = entries_below(at);
-            take(std::span<const Proxy>(proxies_).subspan(row.first, row.count), true);
+            const EntryRange range = entries_below(at);
+            take(std::span<const Proxy>(proxies_).subspan(range.first, range.count), true);
         } else if (node.leaf) {
-            for (std::size_t i = node.first; i < node.first + node.count; ++i) sort_out(entries_[i]);
+            for (std::size_t i = node.first; i < node.first + node.count; ++i) classify(entries_[i]);
         } else {
             for (NodeIndex child = node.first + node.count; child-- > node.first;) open.push(child);
         }

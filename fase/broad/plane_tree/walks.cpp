@@ -1,11 +1,12 @@
-/// What only reads a tree of planes: all pairs, checks, drawing.
+/// Read-only functions of the plane tree: all pairs, checks, drawing.
 #include <algorithm>
 
+#include "fase/broad/builders/binned_split.hpp"
 #include "fase/broad/plane_tree/plane_tree.hpp"
 #include "fase/broad/search/pair_sink.hpp"
 
 namespace fase::broad {
-/// A descent of a tree into itself: pairs of nodes that overlap (or are the same) and have yet to be opened.
+/// A descent of a tree against itself: keeps a stack of overlapping or identical node pairs that are not expanded yet.
 template <bool AwakeOnly> class PlaneTree::Descent {
 public:
     Descent(const PlaneTree& tree, PairSink& sink)
@@ -17,15 +18,15 @@ public:
     Descent(const Descent&) = delete;
     Descent& operator=(const Descent&) = delete;
 
-    /// All pairs below two nodes that overlap, or below a node and itself.
+    /// Finds all pairs below two overlapping nodes, or below one node.
     void run(NodePair start) {
         add({start.a, start.b});
-        while (!open_.empty()) open_one();
+        while (!open_.empty()) expand_one();
     }
-    /// Goes one level down and appends what is left to do.
+    /// Expands one level and appends the remaining node pairs.
     void split(NodePair start, std::vector<NodePair>& parts) {
         add(start);
-        if (!open_.empty()) open_one();
+        if (!open_.empty()) expand_one();
         while (!open_.empty()) parts.push_back(open_.pop());
     }
 
@@ -41,50 +42,50 @@ private:
             if ((node_awake_[pair.a] | node_awake_[pair.b]) == 0) return;
         open_.push(pair);
     }
-    void add_if_meeting(NodeIndex a, NodeIndex b) {
+    void add_if_overlapping(NodeIndex a, NodeIndex b) {
         if (overlaps_branchless(nodes_[a].box, nodes_[b].box)) add({a, b});
     }
-    void open_one() {
+    void expand_one() {
         const NodePair pair = open_.pop();
         const Node a = nodes_[pair.a], b = nodes_[pair.b];
         if (pair.a == pair.b) {
             if (a.leaf) return test_leaf(a);
             for (NodeIndex i = a.first; i < a.first + a.count; ++i) {
                 add({i, i});
-                for (NodeIndex k = i + 1; k < a.first + a.count; ++k) add_if_meeting(i, k);
+                for (NodeIndex k = i + 1; k < a.first + a.count; ++k) add_if_overlapping(i, k);
             }
         } else if (a.leaf && b.leaf) {
             test_leaves(a, b);
         } else if (a.leaf || (!b.leaf && box_cost(a.box) < box_cost(b.box))) {
-            for (NodeIndex k = b.first; k < b.first + b.count; ++k) add_if_meeting(pair.a, k);
+            for (NodeIndex k = b.first; k < b.first + b.count; ++k) add_if_overlapping(pair.a, k);
         } else {
-            for (NodeIndex i = a.first; i < a.first + a.count; ++i) add_if_meeting(i, pair.b);
+            for (NodeIndex i = a.first; i < a.first + a.count; ++i) add_if_overlapping(i, pair.b);
         }
     }
-    [[nodiscard]] bool rests(std::size_t entry) const {
+    [[nodiscard]] bool is_asleep(std::size_t entry) const {
         if constexpr (AwakeOnly) return entry_awake_[entry] == 0;
         return false;
     }
-    /// Pairs of an entry with those of a row that it overlaps; with `resting_only`, that rest. In blocks, without a
-    /// branch on the outcome of a test.
-    void test_row(const Move& mine, std::size_t first, std::size_t end, bool resting_only = false) {
+    /// Adds the pairs of a box with the entries that it overlaps; with `asleep_only`, only sleeping entries. Works in
+    /// blocks, without a branch on the result of a test.
+    void test_row(const Move& mine, std::size_t first, std::size_t end, bool asleep_only = false) {
         std::array<Proxy, 64> hits;
         while (first < end) {
             const std::size_t stop = std::min(end, first + hits.size());
             std::size_t count = 0;
             for (; first < stop; ++first) {
-                const bool wanted = !resting_only || rests(first);
+                const bool is_candidate = !asleep_only || is_asleep(first);
                 hits[count] = entries_[first].proxy;
-                count += wanted && overlaps_branchless(mine.box, entries_[first].box) ? 1 : 0;
+                count += is_candidate && overlaps_branchless(mine.box, entries_[first].box) ? 1 : 0;
             }
             for (std::size_t i = 0; i < count; ++i) sink_.add(mine.proxy, hits[i]);
         }
     }
-    /// One that rests is left to those that are awake, so that a crowd of sleepers costs nothing.
+    /// Only awake boxes are tested against the others, so that groups of sleeping boxes cost nothing.
     void test_leaf(const Node& leaf) {
         const std::size_t first = leaf.first, end = leaf.first + leaf.count;
         for (std::size_t i = first; i < end; ++i) {
-            if (rests(i)) continue;
+            if (is_asleep(i)) continue;
             const Move mine = entries_[i];
             if constexpr (AwakeOnly) test_row(mine, first, i, true);
             test_row(mine, i + 1, end);
@@ -94,11 +95,11 @@ private:
         test_from(a, b, false);
         if constexpr (AwakeOnly) test_from(b, a, true);
     }
-    void test_from(const Node& a, const Node& b, bool resting_only) {
+    void test_from(const Node& a, const Node& b, bool asleep_only) {
         for (std::size_t i = a.first; i < a.first + a.count; ++i) {
             const Move mine = entries_[i];
-            if (!rests(i) && overlaps_branchless(mine.box, b.box))
-                test_row(mine, b.first, b.first + b.count, resting_only);
+            if (!is_asleep(i) && overlaps_branchless(mine.box, b.box))
+                test_row(mine, b.first, b.first + b.count, asleep_only);
         }
     }
 };
@@ -116,12 +117,12 @@ void PlaneTree::find_awake_pairs(std::vector<Pair>& out) const {
 }
 
 void PlaneTree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    constexpr std::size_t wanted_parts = 512;
+    constexpr std::size_t min_parts = 512;
     PairSink sink(out);
     store_.unbounded_pairs(false, [&](Proxy p, Proxy q) { sink.add(p, q); });
-    std::vector<NodePair> parts, next;  // always the whole descent, in finer and finer parts
+    std::vector<NodePair> parts, next;  // together always the complete descent, in finer and finer parts
     if (!nodes_.empty()) parts.push_back({root, root});
-    while (!parts.empty() && parts.size() < wanted_parts) {
+    while (!parts.empty() && parts.size() < min_parts) {
         next.clear();
         Descent<false> descent(*this, sink);
         for (const NodePair& part : parts) descent.split(part, next);
@@ -154,14 +155,14 @@ void PlaneTree::cells(std::vector<DrawnCell>& out) const {
     }
 }
 
-/// That a node fits what is below it, and that its plane sorts its children.
+/// Checks that a node fits its contents and that its plane orders its children.
 std::string PlaneTree::broken_node(NodeIndex at) const {
     const Node& node = nodes_[at];
     const std::size_t end = std::size_t{node.first} + node.count;
     if (node.count == 0) return "a node holds nothing";
     if (end > (node.leaf ? entries_.size() : nodes_.size())) return "a node points past the end";
-    if (!node.leaf && node.first <= at) return "a child stands before its parent";
-    if (!node.leaf && node.count != 2 && node.count != 3) return "an inner node has not two or three children";
+    if (!node.leaf && node.first <= at) return "a child is before its parent";
+    if (!node.leaf && node.count != 2 && node.count != 3) return "an inner node does not have two or three children";
     Aabb merged;
     std::uint8_t awake = 0;
     int last_side = -1;
@@ -169,37 +170,37 @@ std::string PlaneTree::broken_node(NodeIndex at) const {
         merged = merge(merged, node.leaf ? entries_[i].box : nodes_[i].box);
         if (!node_awake_.empty()) awake |= node.leaf ? entry_awake_[i] : node_awake_[i];
         if (node.leaf) continue;
-        const Row row = entries_below(static_cast<NodeIndex>(i));
-        const auto boxes = std::span(entries_).subspan(row.first, row.count);
+        const EntryRange range = entries_below(static_cast<NodeIndex>(i));
+        const auto boxes = std::span(entries_).subspan(range.first, range.count);
         const int side = static_cast<int>(side_of(planes_[at], boxes[0].box));
         if (side <= last_side) return "the children of a node are not sorted by its plane";
         last_side = side;
         if (cut_of(planes_[at], boxes).separates()) return "a child's boxes are on several sides of the plane";
     }
     if (!(merged == node.box)) return "a node does not fit its boxes";
-    if (!node_awake_.empty() && awake != node_awake_[at]) return "a node does not know whether anything below is awake";
+    if (!node_awake_.empty() && awake != node_awake_[at]) return "the awake mark of a node is wrong";
     return {};
 }
 
 std::string PlaneTree::broken_invariant() const {
-    if (std::string broken = store_.broken_invariant(); !broken.empty() || pending_ || marks_old_) return broken;
+    if (std::string broken = store_.broken_invariant(); !broken.empty() || boxes_changed_ || awake_changed_)
+        return broken;
     if (entries_.size() != store_.regular().size()) return "the tree holds more or fewer boxes than the store";
-    if (proxies_.size() != entries_.size() || planes_.size() != nodes_.size()) return "rows differ in length";
+    if (proxies_.size() != entries_.size() || planes_.size() != nodes_.size()) return "arrays differ in length";
     if (nodes_.empty() != entries_.empty()) return "boxes without a tree, or a tree without boxes";
-    std::vector<bool> met(entries_.size(), false);  // by place in the store
+    std::vector<bool> met(entries_.size(), false);  // by index in the store
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const Proxy p = entries_[i].proxy;
-        if (proxies_[i] != p) return "a proxy is not beside its box";
+        if (proxies_[i] != p) return "a proxy and its entry differ";
         if (!store_.holds(p) || store_.is_unbounded(p) || !(store_.box(p) == entries_[i].box))
-            return "the tree holds another box than the store";
+            return "the tree and the store hold different boxes";
         if (met[store_.place(p)]) return "a box is in the tree twice";
         met[store_.place(p)] = true;
         if (!entry_awake_.empty() && (entry_awake_[i] != 0) != store_.is_awake(p))
-            return "a mark that a box is awake is wrong";
+            return "the awake mark of a box is wrong";
     }
-    if (entry_awake_.size() != (store_.resting() == 0 ? 0 : entries_.size()))
-        return "marks of what is awake are missing";
-    if (node_awake_.size() != (store_.resting() == 0 ? 0 : nodes_.size())) return "marks of what is awake are missing";
+    if (entry_awake_.size() != (store_.resting() == 0 ? 0 : entries_.size())) return "awake marks are missing";
+    if (node_awake_.size() != (store_.resting() == 0 ? 0 : nodes_.size())) return "awake marks are missing";
     std::size_t seen = 0, next_entry = 0;
     LocalStack<NodeIndex, 64> open;
     if (!nodes_.empty()) open.push(root);
@@ -215,7 +216,7 @@ std::string PlaneTree::broken_invariant() const {
             for (NodeIndex child = node.first + node.count; child-- > node.first;) open.push(child);
         }
     }
-    if (seen != nodes_.size() || next_entry != entries_.size()) return "nodes or boxes are out of reach";
+    if (seen != nodes_.size() || next_entry != entries_.size()) return "nodes or boxes are unreachable";
     return {};
 }
 

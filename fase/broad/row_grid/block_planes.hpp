@@ -1,40 +1,41 @@
 #pragma once
-/// Planes that share out space: each box belongs to one numbered cell.
+/// A tree of planes that partitions space into numbered cells.
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "fase/core/no_index.hpp"
 #include "fase/geometry/aabb.hpp"
 
 namespace fase::broad {
 
-/// A binary tree of planes across the axes whose leaves are cells with numbers of the caller's own. Together the cells
-/// fill all of space; a box belongs to the one that holds its middle. Cells are cut in two and given up one at a time.
+/// A binary tree of axis-aligned planes. Its leaves are cells with numbers chosen by the caller. The cells cover all of
+/// space without overlap; a box belongs to the cell that contains its centre.
 class BlockPlanes {
 public:
-    static constexpr std::uint32_t none = 0xffffffff;
-
-    [[nodiscard]] bool empty() const { return root_ == none; }
-    /// Are there several cells?
-    [[nodiscard]] bool is_cut() const { return root_ != none && (root_ & leaf) == 0; }
-    /// All of space becomes one cell.
+    [[nodiscard]] bool empty() const { return root_ == no_index; }
+    /// Whether there are several cells.
+    [[nodiscard]] bool is_cut() const { return root_ != no_index && (root_ & leaf) == 0; }
+    /// Makes all of space one cell. The tree must be empty.
     void begin(std::uint32_t cell);
-    /// What lies at or beyond the plane becomes another cell. `at` is twice the coordinate, as middle() is.
+    /// Splits a cell: the part at or beyond the plane becomes the cell `beyond`. `at` is twice the coordinate, like
+    /// doubled_centre().
     void cut(std::uint32_t cell, int axis, float at, std::uint32_t beyond);
-    /// Its space goes to another number.
+    /// Gives a cell another number.
     void replace(std::uint32_t cell, std::uint32_t by);
-    /// Its space goes to the neighbour behind the plane that cut it off.
+    /// Merges a cell into the other side of the plane that bounds it.
     void remove(std::uint32_t cell);
-    /// The cell on the other side of the plane that cut it off; none when that side has been cut again, or no plane.
+    /// Returns the cell on the other side of the plane that bounds it; no_index when that side is split, or for a
+    /// single cell.
     [[nodiscard]] std::uint32_t sibling(std::uint32_t cell) const;
-    /// Twice the bounds of the cell's space: where middle() of its boxes lies.
+    /// Returns the bounds of the cell in doubled coordinates: they contain doubled_centre() of its boxes.
     [[nodiscard]] Aabb space_of(std::uint32_t cell) const;
     void clear();
 
-    /// There must be a cell.
+    /// Returns the cell of a box. The tree must not be empty.
     [[nodiscard]] std::uint32_t cell_of(const Aabb& box) const {
-        Vec3 at = middle(box);
+        Vec3 at = doubled_centre(box);
         std::uint32_t node = root_;
         while ((node & leaf) == 0) {
             const Plane& plane = planes_[node];
@@ -42,13 +43,13 @@ public:
         }
         return node & ~leaf;
     }
-    /// Twice the middle of a finite box.
-    [[nodiscard]] static Vec3 middle(const Aabb& box) { return box.lo + box.hi; }
+    /// Returns twice the centre of a finite box.
+    [[nodiscard]] static Vec3 doubled_centre(const Aabb& box) { return box.lo + box.hi; }
 
     [[nodiscard]] std::size_t bytes() const {
         return planes_.capacity() * sizeof(Plane) + (free_.capacity() + parents_.capacity()) * sizeof(std::uint32_t);
     }
-    /// `cells`: how many there should be.
+    /// Checks the tree, which must have `cells` cells; "" when nothing is broken.
     [[nodiscard]] std::string broken_invariant(std::size_t cells) const;
 
 private:
@@ -57,15 +58,15 @@ private:
         float at = 0;
         int axis = 0;
         std::array<std::uint32_t, 2> child{};  // a plane, or a cell with the bit `leaf`
-        std::uint32_t parent = none;
+        std::uint32_t parent = no_index;
     };
     std::vector<Plane> planes_;
-    std::vector<std::uint32_t> free_;     // of planes_
-    std::vector<std::uint32_t> parents_;  // by cell: the plane that it lies behind
-    std::uint32_t root_ = none;
+    std::vector<std::uint32_t> free_;     // unused entries of planes_
+    std::vector<std::uint32_t> parents_;  // by cell: the plane that bounds it
+    std::uint32_t root_ = no_index;
 
     void set_parent(std::uint32_t node, std::uint32_t parent);
-    /// Where the plane's parent, or the root, points at it.
+    /// Returns the link to `node` in its parent, or in the root.
     [[nodiscard]] std::uint32_t& link_to(std::uint32_t node, std::uint32_t parent);
 };
 

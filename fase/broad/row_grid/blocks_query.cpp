@@ -1,5 +1,5 @@
-/// Who asks which block: a few askers at a time are held against the bounds of all sets, then each set gets those that
-/// reach it.
+/// Query boxes against blocks: tests a batch of query boxes against the bounds of all sets, then tests each set against
+/// those that touch it.
 #include <algorithm>
 #include <limits>
 
@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::size_t max_queries = 128;
 
-/// QueryBoxes turned into columns.
+/// Query boxes as columns.
 struct QueryColumns {
     std::array<std::array<float, max_queries + BoxColumns::padding>, 6> bounds;
-    std::array<Proxy, 1> none{};
+    std::array<Proxy, 1> no_proxies{};
 
     void fill(std::span<const Move> query_boxes) {
         for (std::size_t i = 0; i < query_boxes.size(); ++i) {
@@ -31,7 +31,7 @@ struct QueryColumns {
     [[nodiscard]] ColumnsView view(std::size_t count) const {
         return {{bounds[0].data(), bounds[1].data(), bounds[2].data()},
                 {bounds[3].data(), bounds[4].data(), bounds[5].data()},
-                none.data(),
+                no_proxies.data(),
                 count};
     }
 };
@@ -42,29 +42,30 @@ void RowBlocks::find_query_pairs(const row_grid::QueryBoxes& query_boxes, std::u
                                  row_grid::PairBlock& out) const {
     if (size_ == 0) return;
     QueryColumns columns;
-    std::array<std::uint32_t, max_queries + BoxColumns::padding> reaching;
+    std::array<std::uint32_t, max_queries + BoxColumns::padding> touching;
     std::array<Move, max_queries> chosen;
     for (std::size_t begin = 0; begin < query_boxes.boxes.size(); begin += max_queries) {
-        const std::span<const Move> some =
+        const std::span<const Move> batch =
             query_boxes.boxes.subspan(begin, std::min(max_queries, query_boxes.boxes.size() - begin));
         Aabb around;
-        for (const Move& m : some) around = merge(m.box, around);  // a NaN in m.box gives the other
+        for (const Move& m : batch) around = merge(m.box, around);  // ignores a NaN in m.box
         bool filled = false;
-        for_each_set_near(around, [&](std::uint32_t k) {
+        for_each_set_touching(around, [&](std::uint32_t k) {
             const RowSet& boxes = set(k);
-            if (after != none) {
-                const std::size_t mine = set(after).size();
-                if (boxes.size() < mine || (boxes.size() == mine && k <= after)) return true;
+            if (after != no_index) {
+                const std::size_t size = set(after).size();
+                if (boxes.size() < size || (boxes.size() == size && k <= after)) return true;
             }
             const Aabb bounds = bounds_.box(k);
-            if (some.size() == 1 || contains(bounds, around)) {
-                row_grid::find_query_pairs(boxes.view(), {some, query_boxes.is_query}, out);
+            if (batch.size() == 1 || contains(bounds, around)) {
+                row_grid::find_query_pairs(boxes.view(), {batch, query_boxes.is_query}, out);
                 return true;
             }
-            if (!filled) columns.fill(some);
+            if (!filled) columns.fill(batch);
             filled = true;
-            const std::size_t count = scan_touching(columns.view(some.size()), 0, some.size(), bounds, reaching.data());
-            for (std::size_t i = 0; i < count; ++i) chosen[i] = some[reaching[i]];
+            const std::size_t count =
+                scan_touching(columns.view(batch.size()), 0, batch.size(), bounds, touching.data());
+            for (std::size_t i = 0; i < count; ++i) chosen[i] = batch[touching[i]];
             if (count > 0)
                 row_grid::find_query_pairs(boxes.view(), {{chosen.data(), count}, query_boxes.is_query}, out);
             return true;

@@ -1,18 +1,18 @@
 #pragma once
-/// Searches for pairs that are cut into chunks, which tasks take one at a time.
+/// Divides searches for pairs into chunks, which tasks process one at a time.
 #include <algorithm>
 #include <span>
 #include <vector>
 
 #include "fase/broad/row_grid/kernels.hpp"
-#include "fase/broad/search/parted_pairs.hpp"
+#include "fase/broad/search/partitioned_search.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad::row_grid {
 
-/// How the records of a set are cut into chunks that are searched in one go: many of the finest level, fewer of each
-/// coarser one, whose boxes meet more others. Cuts go by count, so that the order of the pairs does not depend on the
-/// threads.
+/// Divides the records of a set into chunks: large ones in the finest level, smaller ones in coarser levels, whose
+/// boxes have more pairs. The division depends only on the counts, so that the order of the pairs does not depend on
+/// the number of threads.
 class RowCuts {
 public:
     explicit RowCuts(std::span<const RowLevel> levels) : levels_(levels) {}
@@ -22,7 +22,7 @@ public:
         for (std::size_t k = 0; k < levels_.size(); ++k) sum += chunks_of(k);
         return sum;
     }
-    /// The records of a chunk.
+    /// Returns the records of a chunk.
     [[nodiscard]] RecordSpan operator[](std::size_t chunk) const {
         std::size_t k = 0;
         for (; chunk >= chunks_of(k); ++k) chunk -= chunks_of(k);
@@ -40,10 +40,11 @@ private:
     }
 };
 
-/// As find_in_parts(), for searches that write to a block.
+/// find_in_parts() for searches that write to a PairBlock.
 template <class Find>
-void find_in_chunks(TaskRunner* tasks, std::size_t count, std::vector<Pair>& out, const Find& find) {
-    find_in_parts(tasks, count, out, [&](std::size_t chunk, std::vector<Pair>& pairs) {
+void find_in_chunks(TaskRunner* tasks, std::size_t count, ThreadLocalPairBuffers& buffers, std::vector<Pair>& out,
+                    const Find& find) {
+    find_in_parts(tasks, count, buffers, out, [&](std::size_t chunk, std::vector<Pair>& pairs) {
         PairBlock block(pairs);
         find(chunk, block);
     });

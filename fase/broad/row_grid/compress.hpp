@@ -1,13 +1,13 @@
 #pragma once
-/// Where each lane comes from when the marked lanes of a vector move to its front.
+/// Permutation tables that move the marked lanes of a vector to its front.
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace fase::broad::row_grid {
 
-/// By the bits of the mask: first the marked lanes, in order, then lane 0. Each lane is named by `bytes` bytes: its
-/// number, or the numbers of its bytes.
+/// Returns the source lanes by mask: first the marked lanes, in order, then lane 0. Each lane is given by `bytes`
+/// bytes: its index, or the indices of its bytes.
 template <std::size_t lanes, std::size_t bytes> constexpr auto front_lanes() {
     std::array<std::array<std::uint8_t, lanes * bytes>, (std::size_t{1} << lanes)> table{};
     for (std::size_t mask = 0; mask < table.size(); ++mask) {

@@ -1,4 +1,4 @@
-/// How large the cells of a row grid are, how many levels it has and which way its rows run: chosen from a sample.
+/// Chooses the cell sizes, the levels and the row axis of a row grid from a sample.
 #include <algorithm>
 #include <cmath>
 
@@ -8,42 +8,37 @@
 namespace fase::broad {
 namespace {
 
-float longest_side(const Aabb& box) {
-    const Vec3 e = extent(box);
-    return std::max(e.x, std::max(e.y, e.z));
-}
-
 using Range = RowSample::Range;
 
-/// Ranks follow from so many of a sample: to find these takes most of the time.
-constexpr std::size_t ranked = 256;
+/// Max number of sampled boxes for percentiles, which take most of the time.
+constexpr std::size_t max_ranked = 256;
 
-/// The value that a share of them do not exceed. Changes their order.
-float value_at(std::vector<float>& values, double share) {
+/// Returns the quantile of the values. Reorders them.
+float quantile(std::vector<float>& values, double share) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
 
-/// All but the outermost in 64 of some values lie in it, with some room beside them: one box far away does not stretch
-/// the grid. The room ends not far beyond the lowest and highest of all.
+/// Returns the range of the values without the outermost 64th on either side, plus a margin: one distant box does not
+/// stretch the grid. The margin ends close to the lowest and highest value.
 Range main_range(std::vector<float>& some, float lowest, float highest) {
     const double out = some.size() < 192 ? 0 : 1.0 / 64;
-    const float from = value_at(some, out), to = value_at(some, 1 - out), room = (to - from) / 16;
-    const float least = std::max(lowest - room / 4, from - room), most = std::min(highest + room / 4, to + room);
-    return {least, most - least};
+    const float from = quantile(some, out), to = quantile(some, 1 - out), margin = (to - from) / 16;
+    const float begin = std::max(lowest - margin / 4, from - margin), end = std::min(highest + margin / 4, to + margin);
+    return {begin, end - begin};
 }
 
-/// Lays a coarse grid with a cell a box over the sample and counts the cells that are taken.
-float share_of_places(RowSample& sample, std::array<bool, 3> wide) {
+/// Returns the share of occupied cells of a coarse grid with one cell per sampled box, relative to evenly spread boxes.
+float occupied_share(RowSample& sample, std::array<bool, 3> wide) {
     const std::vector<std::array<float, 3>>& corners = sample.corners;
     const int dimensions = int{wide[0]} + int{wide[1]} + int{wide[2]};
     if (corners.size() < 256 || dimensions == 0) return 1;
     std::size_t side = 1;
     const auto power = [&](std::size_t s) { return dimensions == 1 ? s : dimensions == 2 ? s * s : s * s * s; };
     while (power(side + 1) <= corners.size()) ++side;
-    std::vector<std::uint8_t>& taken = sample.taken;
-    taken.assign(power(side), 0);
+    std::vector<std::uint8_t>& occupied = sample.occupied;
+    occupied.assign(power(side), 0);
     std::size_t places = 0;
     for (const std::array<float, 3>& corner : corners) {
         std::size_t at = 0;
@@ -53,32 +48,32 @@ float share_of_places(RowSample& sample, std::array<bool, 3> wide) {
             const auto k = static_cast<std::size_t>(std::clamp(t, 0.0f, 1.0f) * static_cast<float>(side));
             at = at * side + std::min(k, side - 1);
         }
-        places += taken[at] != 0 ? 0 : 1;
-        taken[at] = 1;
+        places += occupied[at] != 0 ? 0 : 1;
+        occupied[at] = 1;
     }
     constexpr double filled_by_chance = 0.632;  // 1 - 1/e
     return static_cast<float>(
-        std::min(1.0, static_cast<double>(places) / (filled_by_chance * static_cast<double>(taken.size()))));
+        std::min(1.0, static_cast<double>(places) / (filled_by_chance * static_cast<double>(occupied.size()))));
 }
 
-template <class Row> void take_sample(std::span<const Row> boxes, std::size_t most, RowSample& sample) {
+template <class Row> void take_sample(std::span<const Row> boxes, std::size_t max_count, RowSample& sample) {
     sample.boxes = boxes.size();
     sample.sides.clear();
     sample.corners.clear();
-    const std::size_t count = std::min(boxes.size(), most);
+    const std::size_t count = std::min(boxes.size(), max_count);
     for (std::size_t i = 0; i < count; ++i) {
         const Aabb& box = box_of(boxes[i * boxes.size() / count]);
-        if (!is_regular(box)) continue;  // this will be noticed later
+        if (!is_regular(box)) continue;  // build() detects it later
         sample.sides.push_back(longest_side(box));
         sample.corners.push_back({box.lo.x, box.lo.y, box.lo.z});
     }
     if (sample.sides.empty()) return;
-    const std::size_t step = (sample.sides.size() + ranked - 1) / ranked;
+    const std::size_t step = (sample.sides.size() + max_ranked - 1) / max_ranked;
     std::vector<float>& some = sample.some;
     some.clear();
     for (std::size_t i = 0; i < sample.sides.size(); i += step) some.push_back(sample.sides[i]);
-    sample.max_sides = value_at(some, 0.98);
-    sample.many_sides = value_at(some, 0.8);
+    sample.max_sides = quantile(some, 0.98);
+    sample.many_sides = quantile(some, 0.8);
     std::array<bool, 3> wide{};
     for (std::size_t a = 0; a < 3; ++a) {
         float lowest = sample.corners[0][a], highest = lowest;
@@ -91,10 +86,11 @@ template <class Row> void take_sample(std::span<const Row> boxes, std::size_t mo
         sample.ranges[a] = main_range(some, lowest, highest);
         wide[a] = sample.ranges[a].length > 4 * sample.max_sides;
     }
-    sample.spread_share = share_of_places(sample, wide);
+    sample.occupied_share = occupied_share(sample, wide);
 }
 
-/// Mean distance of `count` boxes that fill the ranges which are wider than a few `side`; 0 when none is.
+/// Returns the mean distance of `count` boxes that fill the ranges, without those shorter than 4 `side`; 0 without
+/// ranges.
 double spacing_of(const RowSample& sample, double count, float side) {
     double volume = 1;
     int dimensions = 0;
@@ -107,10 +103,10 @@ double spacing_of(const RowSample& sample, double count, float side) {
     return dimensions == 0 ? 0 : dimensions == 1 ? each : dimensions == 2 ? std::sqrt(each) : std::cbrt(each);
 }
 
-/// Gives the level its cells: of that edge, `along` of them along a row for one edge. When there would be more than
-/// `most`, fewer along a row, and if that is not enough, of a larger edge.
+/// Divides the level into cells: rows `edge` metres apart, `along` cells along a row per `edge`. If that gives more
+/// than `max_cells` cells, it uses fewer along a row, then a larger edge.
 void divide(RowLevel& level, const RowSample& sample, const std::array<int, 3>& axis, double edge, double along,
-            double most) {
+            double max_cells) {
     const double min_along = std::min(along, 2.5);
     const auto length = [&](std::size_t k) { return double{sample.ranges[static_cast<std::size_t>(axis[k])].length}; };
     std::array<double, 3> counts{};
@@ -122,8 +118,8 @@ void divide(RowLevel& level, const RowSample& sample, const std::array<int, 3>& 
             rows *= count;
         }
         const double edges = length(0) / edge;
-        if ((std::floor(edges * min_along) + 1) * rows > most) continue;
-        if (edges > 0) along = std::max(min_along, std::min(along, (most / rows - 1) / edges));
+        if ((std::floor(edges * min_along) + 1) * rows > max_cells) continue;
+        if (edges > 0) along = std::max(min_along, std::min(along, (max_cells / rows - 1) / edges));
         counts[static_cast<std::size_t>(axis[0])] = std::floor(edges * along) + 1;
         break;
     }
@@ -138,7 +134,7 @@ void divide(RowLevel& level, const RowSample& sample, const std::array<int, 3>& 
     level.stride[at(1)] = static_cast<std::uint32_t>(counts[at(0)] * counts[at(2)]);
 }
 
-/// Rows run along the longest axis, along the first unless another is clearly longer.
+/// Returns the order of the axes: rows run along x, or along an axis that is clearly longer.
 std::array<int, 3> axes_for(const RowSample& sample) {
     int longest = 0;
     for (int a = 1; a < 3; ++a)
@@ -148,25 +144,25 @@ std::array<int, 3> axes_for(const RowSample& sample) {
     return {longest, (longest + 1) % 3, (longest + 2) % 3};
 }
 
-/// What levels are laid out by.
+/// The parameters of lay_out().
 struct Layout {
-    double cells_a_box = 0;
-    double taken = 1;      ///< of the space that boxes lie in: the share in which they are
-    bool by_list = false;  ///< rows in a list
+    double cells_per_box = 0;
+    double occupied = 1;   ///< occupied share of the space
+    bool by_list = false;  ///< lists the rows
 };
 
 bool is_sparse(const RowSample& sample) {
     return spacing_of(sample, static_cast<double>(sample.boxes), sample.max_sides) > 2 * double{sample.max_sides};
 }
 
-/// All levels but the last, which takes what is larger than all of the sample.
+/// Lays out all levels except the last, which takes boxes larger than all sampled ones.
 void lay_out(const RowGridSettings& settings, const RowSample& sample, const Layout& layout, RowFit& fit) {
     fit.levels.clear();
-    // Most boxes in the lowest level; where boxes are far from each other, cells of a box each are small enough.
+    // The finest level takes most boxes. Where boxes are sparse, cells with one box each are small enough.
     const double max_sides = sample.max_sides, many_sides = sample.many_sides;
-    const auto spacing = [&](double count, float side) { return spacing_of(sample, count / layout.taken, side); };
+    const auto spacing = [&](double count, float side) { return spacing_of(sample, count / layout.occupied, side); };
     const double all_spacing = spacing(static_cast<double>(sample.boxes), sample.max_sides);
-    // Next to boxes on one plane there is but one row that they reach into: fewer of them shall.
+    // Boxes on a plane have only one neighbour row each: larger cells let fewer of them reach into it.
     const auto wide = std::count_if(sample.ranges.begin(), sample.ranges.end(),
                                     [&](const Range& range) { return range.length > 4 * max_sides; });
     const double share = settings.side_share * (wide < 3 ? 1.25 : 1);
@@ -175,11 +171,11 @@ void lay_out(const RowGridSettings& settings, const RowSample& sample, const Lay
     if (settings.cell > 0) cell = settings.cell;
     if (!(cell > 1e-30)) cell = 1;
 
-    std::size_t below = 0;  // of the sample, in the levels so far
+    std::size_t below = 0;  // number of sampled boxes in the levels so far
     for (double limit = cell; below < sample.sides.size(); limit *= std::max(settings.level_ratio, 1.5f)) {
         const auto within = static_cast<std::size_t>(
             std::count_if(sample.sides.begin(), sample.sides.end(),
-                          [most = static_cast<float>(limit)](float side) { return side <= most; }));
+                          [max_side = static_cast<float>(limit)](float side) { return side <= max_side; }));
         if (within == below) continue;
         const double count = static_cast<double>(within - below) * static_cast<double>(sample.boxes) /
                              static_cast<double>(sample.sides.size());
@@ -191,19 +187,19 @@ void lay_out(const RowGridSettings& settings, const RowSample& sample, const Lay
             level.edge = limit * (1 + 0x1p-10);
             for (std::size_t a = 0; a < 3; ++a) level.origin[a] = sample.ranges[a].from;
         } else {
-            const double most = std::min(layout.cells_a_box * count + 64, 0x1p22);
-            // Room for the roundings of cell(): 2^-22 of a cell for each of some thousand rows.
+            const double max_cells = std::min(layout.cells_per_box * count + 64, 0x1p22);
+            // A margin for the rounding errors of cell(): 2^-22 of a cell for each of some thousand rows.
             const double edge = std::max(limit, spacing(count, static_cast<float>(limit))) * (1 + 0x1p-9);
-            divide(level, sample, fit.axis, edge, std::max(settings.cells_along, 0.01f), most);
+            divide(level, sample, fit.axis, edge, std::max(settings.cells_along, 0.01f), max_cells);
         }
         fit.levels.push_back(level);
     }
 }
 
-/// How many others of its level share a cube with a box, in the mean: cells that follow each other in a row, as many as
-/// make it as long as rows are apart. That is in proportion to the time of a search.
-double crowd_of(RowSample& sample, const RowFit& fit) {
-    const std::size_t step = (sample.corners.size() + ranked - 1) / ranked;
+/// Returns the mean number of other boxes of its level in the cube of a box: consecutive cells of a row, as long as the
+/// distance of the rows. The time of a search is proportional to it.
+double crowding(RowSample& sample, const RowFit& fit) {
+    const std::size_t step = (sample.corners.size() + max_ranked - 1) / max_ranked;
     std::vector<std::uint64_t>& cubes = sample.cubes;
     cubes.clear();
     for (std::size_t i = 0; i < sample.corners.size(); i += step) {
@@ -231,27 +227,27 @@ double crowd_of(RowSample& sample, const RowFit& fit) {
     return together / (seen * seen) * static_cast<double>(sample.boxes);
 }
 
-/// A table, unless most of it would be empty and the rest too full.
+/// Chooses a table, unless most of its cells would be empty and the others too full.
 void add_levels(const RowGridSettings& settings, RowSample& sample, RowFit& fit) {
     using Rows = RowGridSettings::Rows;
     fit.axis = axes_for(sample);
-    const Layout table{.cells_a_box = settings.cells_a_box};
+    const Layout table{.cells_per_box = settings.cells_per_box};
     lay_out(settings, sample, settings.rows == Rows::List ? Layout{.by_list = true} : table, fit);
-    if (settings.rows == Rows::List || sample.spread_share > 0.5f) return;
+    if (settings.rows == Rows::List || sample.occupied_share > 0.5f) return;
 
-    // Measured: boxes in a table take 12 ns each, and 0.2 for each other in a cube; five times as many cells 1 ns more,
-    // but 0.1 for another; rows in a list 50 to 80.
-    constexpr double much = 16, too_much = 500;
-    double crowd = crowd_of(sample, fit);
-    if (crowd <= much) return;
-    lay_out(settings, sample, {.cells_a_box = 5 * settings.cells_a_box, .taken = sample.spread_share}, fit);
-    const double finer = crowd_of(sample, fit);
+    // Measured per box: a table takes 12 ns, plus 0.2 ns per other box in the cube; a table of five times as many cells
+    // takes 1 ns more, but only 0.1 ns per other box; listed rows take 50 to 80 ns.
+    constexpr double crowded = 16, too_crowded = 500;
+    double crowd = crowding(sample, fit);
+    if (crowd <= crowded) return;
+    lay_out(settings, sample, {.cells_per_box = 5 * settings.cells_per_box, .occupied = sample.occupied_share}, fit);
+    const double finer = crowding(sample, fit);
     if (finer > 0.7 * crowd) {
         lay_out(settings, sample, table, fit);
     } else {
         crowd = finer;
     }
-    if (settings.rows == Rows::Chosen && crowd > too_much && is_sparse(sample))
+    if (settings.rows == Rows::Chosen && crowd > too_crowded && is_sparse(sample))
         lay_out(settings, sample, {.by_list = true}, fit);
 }
 

@@ -1,4 +1,4 @@
-/// Compiles the loops of the row grid for every SIMD target and picks one at run time.
+/// Compiles the loops of the row grid for every SIMD target and selects one at run time.
 // Vectors of unknown size cannot be members; such targets fall back to 128 bits.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
@@ -49,16 +49,16 @@ HWY_EXPORT(gather_list_wide);
 HWY_EXPORT(find_own_pairs_wide);
 HWY_EXPORT(find_query_pairs_wide);
 
-Counted count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+CountResult count_cells(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return HWY_DYNAMIC_DISPATCH(count_moves_wide)(boxes, fit, keys, table);
 }
-Counted count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+CountResult count_cells(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return HWY_DYNAMIC_DISPATCH(count_list_wide)(boxes, fit, keys, table);
 }
-Counted find_keys(std::span<const Move> boxes, const RowFit& fit, float* keys) {
+CountResult find_keys(std::span<const Move> boxes, const RowFit& fit, float* keys) {
     return HWY_DYNAMIC_DISPATCH(moves_keys_wide)(boxes, fit, keys);
 }
-Counted find_keys(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
+CountResult find_keys(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
     return HWY_DYNAMIC_DISPATCH(list_keys_wide)(boxes, fit, keys);
 }
 std::size_t keys_below(std::span<const float> keys, std::uint32_t counter) {

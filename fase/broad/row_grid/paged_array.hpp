@@ -1,16 +1,16 @@
 #pragma once
-/// An array that grows without moving what it holds.
+/// An array that grows without moving its elements.
 #include <cstddef>
 #include <vector>
 
 namespace fase::broad {
 
-/// Values by index, in pages of a fixed length: growing by one costs a page at most, never a copy of all.
+/// Values by index, in pages of a fixed size: growth by one allocates at most one page, and never copies the elements.
 template <class T> class PagedArray {
 public:
     static constexpr std::size_t page = 4096;
 
-    /// At least that many; never fewer than before.
+    /// Grows to at least `count` elements; never shrinks.
     void grow_to(std::size_t count) {
         while (pages_.size() * page < count) pages_.emplace_back(page);
     }

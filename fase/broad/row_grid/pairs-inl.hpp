@@ -1,35 +1,35 @@
-/// Which records each box of a set is tested against, for one SIMD target. Included inside its namespace by
-/// row_grid_kernels.cpp, hence no #pragma once and no includes.
+/// Selects the records that each box of a set is tested against, for one SIMD target. kernels.cpp includes this file
+/// inside the target's namespace, hence no #pragma once and no includes.
 
-/// Where the rows around a box's own lie, in cells of the table.
-struct Neighbours {
-    const std::uint32_t* table;      // first records of the level's cells
-    std::size_t z1, y1z0, y1, y1z1;  // distances of the rows that follow
-    bool has_z0;                     // is there more than one row along z?
+/// Offsets of the neighbour rows of a box, in table entries.
+struct NeighbourRows {
+    const std::uint32_t* table;      // of the level: the first record of each cell
+    std::size_t z1, y1z0, y1, y1z1;  // offsets of the later rows
+    bool has_z0;                     // whether there are several rows along z
 };
 constexpr std::size_t batch_size = 256;
-constexpr std::size_t asking_at_once = 16, asking_vectors = asking_at_once / width;
+constexpr std::size_t queries_per_step = 16, query_vectors = queries_per_step / width;
 
-/// Some records in a row, sorted out by which rows they reach into, so that the loops over each kind have no branch
-/// that cannot be foretold.
+/// Consecutive records, classified by the rows that they reach into, so that the loop over each kind has no
+/// unpredictable branch.
 struct Batch {
     std::size_t begin, end;
     std::array<std::array<std::uint32_t, batch_size + width>, 3> records;  // + z; + y; + both
     std::array<std::size_t, 3> counts{};
-    /// By record: the first cell that matters in its own row, the one behind the last; and where the row before is
-    /// tested too, the first there, or none if there is no such row.
+    /// By record: the first relevant cell of its own row, and the end of these cells; for the test of the row at z - 1,
+    /// the first cell, or the end if there is no such row.
     std::array<std::uint32_t, batch_size + width> from, to, from_z0;
-    /// By record: how many behind it in its own row matter, and one more; by vector of records: the most of these.
+    /// By record: 1 + the number of relevant records after it in its own row; by vector of records: the max of these.
     std::array<std::int32_t, batch_size + width> behind;
-    std::array<std::int32_t, batch_size / width + asking_vectors> max_behind;
+    std::array<std::int32_t, batch_size / width + query_vectors> max_behind;
 };
 
-/// Where the records that reach so stand in a batch.
+/// Index in Batch::records of the records that reach into these rows.
 template <bool reaches_y, bool reaches_z>
 constexpr std::size_t kind_of = (reaches_y ? 2 : 0) + (reaches_z ? 1 : 0) - std::size_t{1};
 
-/// Looks up the cells that matter to each record of a batch, and puts it to those of its kind.
-inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c, Batch& batch) {
+/// Finds the relevant cells of each record of a batch, and appends the record to the list of its kind.
+inline void classify(const RowView& set, const RowLevel& level, const Columns& c, Batch& batch) {
     const FloatTag d;
     const WordTag dw;
     const hn::RebindToSigned<FloatTag> di;
@@ -48,9 +48,9 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
         const auto to = hn::Add(row, hn::Add(x.of(hn::LoadU(d, c.hi_x() + i)), one));
         hn::StoreU(hn::BitCast(dw, from), dw, batch.from.data() + at);
         hn::StoreU(hn::BitCast(dw, to), dw, batch.to.data() + at);
-        const auto end_behind = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(set.table + level.table), to);
+        const auto row_end = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(set.table + level.table), to);
         const auto behind = hn::IfThenElseZero(hn::FirstN(di, std::min<std::size_t>(width, batch.end - i)),
-                                               hn::Sub(end_behind, hn::Iota(di, static_cast<std::int32_t>(i))));
+                                               hn::Sub(row_end, hn::Iota(di, static_cast<std::int32_t>(i))));
         hn::StoreU(behind, di, batch.behind.data() + at);
         batch.max_behind[at / width] = hn::GetLane(hn::MaxOfLanes(di, behind));
         const auto first_row = hn::Eq(cell_z, hn::Zero(di));
@@ -60,24 +60,24 @@ inline void sort_out(const RowView& set, const RowLevel& level, const Columns& c
                    reaches_z = hn::RebindMask(d, hn::Gt(z.of(hn::LoadU(d, c.hi_z() + i)), cell_z));
         const auto valid = hn::FirstN(d, std::min<std::size_t>(width, batch.end - i));
         const auto record = hn::Iota(dw, static_cast<std::uint32_t>(i));
-        const auto put = [&](std::size_t kind, Lanes lanes) {
+        const auto append = [&](std::size_t kind, Lanes lanes) {
             const std::uint32_t bits = bits_of(lanes);
             hn::StoreU(front(record, bits), dw, batch.records[kind].data() + batch.counts[kind]);
             batch.counts[kind] += static_cast<std::size_t>(std::popcount(bits));
         };
-        put(0, hn::And(valid, hn::AndNot(reaches_y, reaches_z)));
-        put(1, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
-        put(2, hn::And(valid, hn::And(reaches_y, reaches_z)));
+        append(0, hn::And(valid, hn::AndNot(reaches_y, reaches_z)));
+        append(1, hn::And(valid, hn::AndNot(reaches_z, reaches_y)));
+        append(2, hn::And(valid, hn::And(reaches_y, reaches_z)));
     }
     const std::size_t done = (batch.end - batch.begin + width - 1) / width;
-    for (std::size_t k = 0; k < asking_vectors; ++k) batch.max_behind[done + k] = 0;
+    for (std::size_t k = 0; k < query_vectors; ++k) batch.max_behind[done + k] = 0;
 }
 
-/// The ranges that a box of a kind is tested against, in the order in which they lie.
+/// The ranges that a box of a kind is tested against, in the order of the records.
 template <bool reaches_y, bool reaches_z> struct Ranges {
     Range z1{}, y1z0{}, y1{}, y1z1{};
 
-    HWY_INLINE Ranges(const Neighbours& rows, const Batch& batch, std::uint32_t i) {
+    HWY_INLINE Ranges(const NeighbourRows& rows, const Batch& batch, std::uint32_t i) {
         const std::size_t at = i - batch.begin;
         const std::uint32_t *const from = rows.table + batch.from[at], *const to = rows.table + batch.to[at];
         if constexpr (reaches_z) z1 = {from[rows.z1], to[rows.z1]};
@@ -92,49 +92,48 @@ template <bool reaches_y, bool reaches_z> struct Ranges {
     }
 };
 
-/// Each record of the batch against those behind it in its row: some records against those that lie a place further on,
-/// two places further on, and so forth. So many at a time with any width of vectors: the order of the pairs is the
-/// same.
+/// Tests each record of the batch against the later ones of its row: 16 records against those one place after them, two
+/// places after them, and so on. It is 16 for every vector width, so that the order of the pairs is the same.
 inline void test_own_row(const Columns& columns, const Batch& batch, PairBlock& block) {
     const WordTag d;
     const hn::RebindToSigned<WordTag> di;
     const Columns c = columns;
     Writer out(block);
-    for (std::size_t i = batch.begin; i < batch.end; i += asking_at_once) {
-        const std::int32_t* const mosts = batch.max_behind.data() + (i - batch.begin) / width;
-        const std::int32_t most = *std::max_element(mosts, mosts + asking_vectors);
+    for (std::size_t i = batch.begin; i < batch.end; i += queries_per_step) {
+        const std::int32_t* const max_behind = batch.max_behind.data() + (i - batch.begin) / width;
+        const std::int32_t end_step = *std::max_element(max_behind, max_behind + query_vectors);
         constexpr std::int32_t steps = 32;
-        for (std::int32_t k = 1; k < most;) {
-            out.make_room<steps * asking_vectors>();
-            const std::int32_t first = k, stop = std::min(most, k + steps);
-            const auto test = [&](const QueryBox& query_boxes, std::size_t vector, std::int32_t step) HWY_ATTR {
+        for (std::int32_t k = 1; k < end_step;) {
+            out.reserve<steps * query_vectors>();
+            const std::int32_t first = k, stop = std::min(end_step, k + steps);
+            const auto test = [&](const QueryBox& queries, std::size_t vector, std::int32_t step) HWY_ATTR {
                 const std::size_t j = i + vector * width + static_cast<std::size_t>(step);
                 const auto behind = hn::LoadU(di, batch.behind.data() + (i - batch.begin) + vector * width);
-                const std::uint32_t bits = query_boxes.overlapped<Side::Unknown, Side::Unknown>(c, j) &
+                const std::uint32_t bits = queries.overlapped<Side::Unknown, Side::Unknown>(c, j) &
                                            bits_of(hn::RebindMask(FloatTag(), hn::Gt(behind, hn::Set(di, step))));
-                out.add(query_boxes.proxy, hn::LoadU(d, c.proxies + j), bits);
+                out.add(queries.proxy, hn::LoadU(d, c.proxies + j), bits);
             };
-            if constexpr (asking_vectors == 1) {
-                const QueryBox query_boxes = QueryBox::several(c, i);
-                for (k = first; k < stop; ++k) test(query_boxes, 0, k);
+            if constexpr (query_vectors == 1) {
+                const QueryBox queries = QueryBox::one_per_lane(c, i);
+                for (k = first; k < stop; ++k) test(queries, 0, k);
             } else {
-                std::array<QueryBox, asking_vectors> query_boxes;
-                for (std::size_t vector = 0; vector < asking_vectors; ++vector)
-                    if (mosts[vector] > 0) query_boxes[vector] = QueryBox::several(c, i + vector * width);
+                std::array<QueryBox, query_vectors> queries;
+                for (std::size_t vector = 0; vector < query_vectors; ++vector)
+                    if (max_behind[vector] > 0) queries[vector] = QueryBox::one_per_lane(c, i + vector * width);
                 for (k = first; k < stop; ++k)
-                    for (std::size_t vector = 0; vector < asking_vectors; ++vector)
-                        if (k < mosts[vector]) test(query_boxes[vector], vector, k);
+                    for (std::size_t vector = 0; vector < query_vectors; ++vector)
+                        if (k < max_behind[vector]) test(queries[vector], vector, k);
             }
         }
     }
 }
 
-/// The boxes of a kind that have a long range: the first `count` in its list. Not inlined: what is passed by reference
-/// would not stay in registers.
+/// Tests the boxes of a kind that have a long range: the first `count` of its list. Not inlined, because variables
+/// passed by reference would not stay in registers.
 template <bool reaches_y, bool reaches_z>
-HWY_NOINLINE void test_long(const Neighbours& rows, const Columns& columns, const Batch& batch, std::size_t count,
+HWY_NOINLINE void test_long(const NeighbourRows& rows, const Columns& columns, const Batch& batch, std::size_t count,
                             PairBlock& block) {
-    const Columns c = columns;  // of its own: nothing that is written can be it
+    const Columns c = columns;  // local copy: no store can alias it
     Writer out(block);
     for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t i = batch.records[kind_of<reaches_y, reaches_z>][k];
@@ -151,9 +150,10 @@ HWY_NOINLINE void test_long(const Neighbours& rows, const Columns& columns, cons
     }
 }
 
-/// Tests the boxes of a kind and returns how many of them have a long range: those come to the front of its list.
+/// Tests the boxes of a kind that have only short ranges. Moves the others to the front of its list and returns their
+/// number.
 template <bool reaches_y, bool reaches_z>
-HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batch& batch, Writer& out) {
+HWY_INLINE std::size_t test_short(const NeighbourRows& rows, const Columns& c, Batch& batch, Writer& out) {
     constexpr std::size_t kind = kind_of<reaches_y, reaches_z>;
     std::uint32_t* const records = batch.records[kind].data();
     const bool has_z0 = rows.has_z0;
@@ -165,7 +165,7 @@ HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batc
             records[with_long++] = i;
             continue;
         }
-        out.make_room<4 * short_vectors>();
+        out.reserve<4 * short_vectors>();
         const QueryBox query_box(c, i);
         if constexpr (reaches_z) test_short_range<Side::Unknown, Side::Later>(query_box, c, ranges.z1, out);
         if constexpr (reaches_y) {
@@ -178,9 +178,9 @@ HWY_INLINE std::size_t test_short(const Neighbours& rows, const Columns& c, Batc
     return with_long;
 }
 
-/// Tests all records of a batch that reach the same neighbours.
+/// Tests all records of a batch that reach into the same neighbour rows.
 template <bool reaches_y, bool reaches_z>
-HWY_INLINE void test_kind(const Neighbours& rows, const Columns& columns, Batch& batch, PairBlock& block) {
+HWY_INLINE void test_kind(const NeighbourRows& rows, const Columns& columns, Batch& batch, PairBlock& block) {
     std::size_t with_long = 0;
     {
         const Columns c = columns;
@@ -190,28 +190,28 @@ HWY_INLINE void test_kind(const Neighbours& rows, const Columns& columns, Batch&
     if (with_long != 0) test_long<reaches_y, reaches_z>(rows, columns, batch, with_long, block);
 }
 
-/// The records from `begin` to `end` of a level with a table against later ones of the level.
+/// Tests the records from `begin` to `end` of a level with a table against later ones of the level.
 inline void find_table_pairs(const RowView& set, const RowLevel& level, std::size_t begin, std::size_t end,
                              const Columns& c, PairBlock& block) {
     const std::size_t step_y = level.stride[static_cast<std::size_t>(set.axis[1])],
                       step_z = level.stride[static_cast<std::size_t>(set.axis[2])];
-    const Neighbours rows{set.table + level.table,     step_z, step_y - step_z, step_y, step_y + step_z,
-                          level.cells(set.axis[2]) > 1};
+    const NeighbourRows rows{set.table + level.table,     step_z, step_y - step_z, step_y, step_y + step_z,
+                             level.cells(set.axis[2]) > 1};
     const std::size_t farthest = rows.has_z0 ? rows.y1z1 : rows.y1;
     const std::size_t cells = level.cells();
-    std::size_t fetched = begin;
+    std::size_t prefetched = begin;
     Batch batch;
     for (batch.begin = begin; batch.begin < end; batch.begin = batch.end) {
         batch.end = std::min(end, batch.begin + batch_size);
-        sort_out(set, level, c, batch);
-        if (set.count >= past_caches) {
-            // What the next batch is going to be tested against and no earlier one was.
+        classify(set, level, c, batch);
+        if (set.count >= out_of_cache_boxes) {
+            // Prefetch the records that the next batch is tested against, without those of earlier batches.
             const std::size_t last_cell = batch.to[batch.end - batch.begin - 1] + farthest;
-            const std::size_t wanted =
+            const std::size_t prefetch_end =
                 std::min<std::size_t>(rows.table[std::min(cells, last_cell)] + batch_size, level.first + level.count);
-            if (fetched + 4 * batch_size < wanted) fetched = wanted - 4 * batch_size;
-            for (; fetched < wanted; fetched += 16)
-                for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + fetched);
+            if (prefetched + 4 * batch_size < prefetch_end) prefetched = prefetch_end - 4 * batch_size;
+            for (; prefetched < prefetch_end; prefetched += 16)
+                for (std::size_t k = 0; k < 6; ++k) __builtin_prefetch(c.lo_x + k * c.stride + prefetched);
         }
         test_own_row(c, batch, block);
         test_kind<false, true>(rows, c, batch, block);
@@ -220,7 +220,7 @@ inline void find_table_pairs(const RowView& set, const RowLevel& level, std::siz
     }
 }
 
-/// Box i against the records of a row in order of x, from `begin` on, as long as they begin before it ends.
+/// Tests box i against the records of a row sorted by x, from `begin` until one begins after the end of the box.
 template <Side y, Side z>
 HWY_INLINE void sweep(const Columns& c, std::size_t i, std::size_t begin, std::size_t end, Writer& out) {
     const float hi_x = c.hi_x()[i];
@@ -230,7 +230,7 @@ HWY_INLINE void sweep(const Columns& c, std::size_t i, std::size_t begin, std::s
     test_range<y, z>([&] { return QueryBox(c, i); }, c, begin, stop, out);
 }
 
-/// The records from `begin` to `end` of a row against those of a later one, both in order of x.
+/// Tests the records from `begin` to `end` of a row against those of a later row, both sorted by x.
 template <Side y, Side z>
 void sweep_row(const RowLevel& level, int axis, const Columns& c, std::size_t begin, std::size_t end, std::size_t other,
                std::size_t other_end, Writer& out) {
@@ -243,7 +243,7 @@ void sweep_row(const RowLevel& level, int axis, const Columns& c, std::size_t be
     }
 }
 
-/// As find_table_pairs(), for a level whose rows stand in a list.
+/// find_table_pairs() for a listed level.
 inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::size_t begin, std::size_t end,
                               const Columns& c, PairBlock& block) {
     Writer out(block);
@@ -251,7 +251,7 @@ inline void find_listed_pairs(const RowView& set, const RowLevel& level, std::si
     const ListedRow* row = std::upper_bound(set.rows.data() + level.first_row, rows_end, begin,
                                             [](std::size_t v, const ListedRow& r) { return v < r.first; }) -
                            1;
-    const ListedRow* above = row;  // moves on through the rows of y + 1
+    const ListedRow* above = row;  // advances through the rows at y + 1
     for (; row < rows_end && row->first < end; ++row) {
         const std::size_t from = std::max<std::size_t>(begin, row->first),
                           to = std::min<std::size_t>(end, row[1].first);
@@ -287,6 +287,6 @@ void find_own_pairs_wide(const RowView& set, std::size_t begin, std::size_t end,
         } else {
             find_table_pairs(set, level, from, to, c, block);
         }
-        if (k > 0) ask_lower_levels(set, k, c, from, to, block);
+        if (k > 0) query_lower_levels(set, k, c, from, to, block);
     }
 }

@@ -1,32 +1,30 @@
-/// Sorting boxes into cells, for one SIMD target. Included inside its namespace by row_grid_kernels.cpp, hence no
-/// #pragma once and no includes.
+/// The counting sort of boxes into cells, for one SIMD target. kernels.cpp includes this file inside the target's
+/// namespace, hence no #pragma once and no includes.
 
-/// Which counter of the table counts the boxes of its cell, in a level.
+/// Returns the table index of the counter for the cell of a box in a level.
 HWY_INLINE std::uint32_t counter_of(const Aabb& box, const RowFit& fit, std::size_t level_index) {
     const RowLevel& level = fit.levels[level_index];
     return level.table + 1 + level.cell(0, box.lo.x) * level.stride[0] + level.cell(1, box.lo.y) * level.stride[1] +
            level.cell(2, box.lo.z) * level.stride[2];
 }
 
-/// The finest level that is as coarse as the box.
+/// Returns the finest level that is coarse enough for the box.
 inline std::size_t level_for(const Aabb& box, const RowFit& fit) {
-    const Vec3 e = extent(box);
-    const float side = std::max(e.x, std::max(e.y, e.z));
+    const float side = longest_side(box);
     std::size_t k = 0;
     while (k + 1 < fit.levels.size() && !(side <= fit.levels[k].limit)) ++k;
     return k;
 }
 
-/// The proxy of a box of a list.
+/// Returns the proxy of an element of either kind of list.
 HWY_INLINE Proxy proxy_of(const Move& m, std::uint32_t) { return m.proxy; }
-/// The same where boxes are known by their place.
 HWY_INLINE Proxy proxy_of(const Aabb&, std::uint32_t place) { return place; }
 
-#if HWY_TARGET == HWY_SCALAR  // a processor without SIMD that Highway knows
-/// Calls take(i, counters, count) for boxes i to i + count - 1: which counters are theirs.
-template <class Row, class Take> Counted for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
+#if HWY_TARGET == HWY_SCALAR  // no SIMD target known to Highway
+/// Calls take(i, counters, count) with the counters of boxes i to i + count - 1.
+template <class Row, class Take> CountResult for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
     const RowLevel& low = fit.levels[0];
-    Counted found;
+    CountResult found;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const Aabb& box = box_of(boxes[i]);
         const auto counter = static_cast<std::int32_t>(counter_of(box, fit, level_for(box, fit)));
@@ -65,7 +63,7 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
     return reach;
 }
 #else
-/// Where the six floats of a box are in a list of boxes; Wide::gather8 reads eight floats of a row.
+/// The layout of a list element in floats. Wide::gather8 reads eight floats per element.
 template <class Row> struct RowFloats;
 template <> struct RowFloats<Move> {
     static_assert(sizeof(Move) == 28 && offsetof(Move, box) == 4);
@@ -78,18 +76,18 @@ template <> struct RowFloats<Aabb> {
 
 using IntTag = hn::RebindToSigned<Wide::Tag>;
 
-/// Boxes of a list turned into columns, a lane a box.
-template <class Row> struct Turned {
+/// Boxes of a list transposed into columns, one box per lane.
+template <class Row> struct Transposed {
     static constexpr std::size_t first = RowFloats<Row>::first;
     Wide row[8];
 
     HWY_INLINE Wide lo(std::size_t a) const { return row[first + a]; }
     HWY_INLINE Wide hi(std::size_t a) const { return row[first + 3 + a]; }
-    /// `order` names Wide::lanes boxes, the last of all not among them.
+    /// Reads the boxes order[0..Wide::lanes-1], which must not include the last box of the list.
     HWY_INLINE void read(const Row* boxes, const std::uint32_t* order) {
         Wide::gather8(reinterpret_cast<const float*>(boxes), order, RowFloats<Row>::count, row);
     }
-    /// Any boxes: copied to where more may be read.
+    /// Same for any boxes: copies them to a padded buffer first.
     HWY_INLINE void read_copies(const Row* boxes, const std::uint32_t* order) {
         std::array<Row, Wide::lanes + 1> copies;
         std::array<std::uint32_t, Wide::lanes> copy_order;
@@ -99,15 +97,15 @@ template <class Row> struct Turned {
         }
         read(copies.data(), copy_order.data());
     }
-    /// The proxies of the boxes that were read.
+    /// Stores the proxies of the boxes that were read.
     HWY_INLINE void store_proxies(Proxy* to) const {
         if constexpr (std::is_same_v<Row, Move>) row[0].store(reinterpret_cast<float*>(to));
     }
 };
 
-/// Calls take(i, counters, count) for boxes i to i + count - 1: which counters are theirs.
+/// Calls take(i, counters, count) with the counters of boxes i to i + count - 1.
 template <class Row, class Take>
-HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
+HWY_INLINE CountResult for_counters(std::span<const Row> boxes, const RowFit& fit, Take&& take) {
     constexpr std::size_t lanes = Wide::lanes;
     const Wide::Tag d;
     const IntTag di;
@@ -124,40 +122,40 @@ HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, T
     const auto zero = hn::Zero(d), before = hn::Set(d, -1.0f), one = hn::Set(d, 1.0f);
     const auto first_counter = hn::Set(di, static_cast<std::int32_t>(low.table + 1));
     const auto far_away = hn::Set(d, largest_built);
-    // As is_regular() of all: sides are numbers and none is negative, and so are bounds; the outermost of these
-    // decide.
+    // is_regular() for all boxes: sides are numbers and not negative, and so are bounds; the outermost bounds are
+    // enough.
     auto all_sides = hn::Eq(zero, zero);
     auto lowest = zero, highest = zero;
-    std::array<std::uint32_t, lanes> in_turn;
-    for (std::size_t k = 0; k < lanes; ++k) in_turn[k] = static_cast<std::uint32_t>(k);
-    Counted found;
-    constexpr std::size_t looked_at = 4;  // one vector in so many, for the boxes outside
+    std::array<std::uint32_t, lanes> sequential;
+    for (std::size_t k = 0; k < lanes; ++k) sequential[k] = static_cast<std::uint32_t>(k);
+    CountResult found;
+    constexpr std::size_t sampling_interval = 4;  // in vectors, for the estimate of boxes outside
     for (std::size_t i = 0; i < boxes.size(); i += lanes) {
         const std::size_t count = std::min(lanes, boxes.size() - i);
-        Turned<Row> turned;
+        Transposed<Row> transposed;
         if (i + lanes < boxes.size()) {
-            turned.read(boxes.data() + i, in_turn.data());
+            transposed.read(boxes.data() + i, sequential.data());
         } else {
             std::array<std::uint32_t, lanes> order;
             for (std::size_t k = 0; k < lanes; ++k)
                 order[k] = static_cast<std::uint32_t>(std::min(i + k, boxes.size() - 1));
-            turned.read_copies(boxes.data(), order.data());
+            transposed.read_copies(boxes.data(), order.data());
         }
-        // Processors that foresee this begin too late.
+        // Hardware prefetchers start too late.
         const char* const ahead = reinterpret_cast<const char*>(boxes.data() + i) + 2048;
         for (std::size_t b = 0; b < lanes * sizeof(Row); b += 64) __builtin_prefetch(ahead + b);
         auto counter = first_counter;
         hn::Vec<Wide::Tag> t[3];
-        for (std::size_t a = 0; a < 3; ++a) {  // as RowLevel::cell()
-            t[a] = hn::Mul(hn::Sub(turned.lo(a).v, origin[a]), per_cell[a]);
+        for (std::size_t a = 0; a < 3; ++a) {  // same as RowLevel::cell()
+            t[a] = hn::Mul(hn::Sub(transposed.lo(a).v, origin[a]), per_cell[a]);
             const auto inside = hn::Min(hn::Max(t[a], zero), last[a]);
             counter = hn::Add(counter, hn::Mul(hn::ConvertTo(di, inside), stride[a]));
-            lowest = hn::Min(lowest, turned.lo(a).v);
-            highest = hn::Max(highest, turned.hi(a).v);
+            lowest = hn::Min(lowest, transposed.lo(a).v);
+            highest = hn::Max(highest, transposed.hi(a).v);
         }
         alignas(64) std::array<std::int32_t, lanes> counters;
         hn::StoreU(counter, di, counters.data());
-        const auto side = [&](std::size_t a) { return hn::Sub(turned.hi(a).v, turned.lo(a).v); };
+        const auto side = [&](std::size_t a) { return hn::Sub(transposed.hi(a).v, transposed.lo(a).v); };
         const auto x = side(0), y = side(1), z = side(2);
         const auto above = hn::Gt(hn::Max(x, hn::Max(y, z)), limit);
         const auto numbers = hn::Lt(hn::Add(x, hn::Add(y, z)), hn::Set(d, Aabb::infinity));
@@ -170,11 +168,11 @@ HWY_INLINE Counted for_counters(std::span<const Row> boxes, const RowFit& fit, T
             }
         }
         take(i, counters.data(), count);
-        if (i % (looked_at * lanes) == 0) {
+        if (i % (sampling_interval * lanes) == 0) {
             auto far = hn::Lt(zero, zero);
             for (std::size_t a = 0; a < 3; ++a)
                 far = hn::Or(far, hn::Or(hn::Lt(t[a], before), hn::Gt(t[a], hn::Add(last[a], hn::Add(one, one)))));
-            found.outside += looked_at * hn::CountTrue(d, far);
+            found.outside += sampling_interval * hn::CountTrue(d, far);
         }
     }
     found.unbounded =
@@ -190,14 +188,15 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
     const Wide::Tag d;
     const auto last = static_cast<std::uint32_t>(boxes.size() - 1);
     hn::Vec<Wide::Tag> reach[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    const auto turn = [&](Turned<Row>& turned, const std::uint32_t* places) HWY_ATTR {
+    const auto turn = [&](Transposed<Row>& transposed, const std::uint32_t* places) HWY_ATTR {
         const hn::RebindToUnsigned<Wide::Tag> du;
         if (HWY_UNLIKELY(!hn::AllFalse(du, hn::Eq(hn::LoadU(du, places), hn::Set(du, last))))) {
-            turned.read_copies(boxes.data(), places);
+            transposed.read_copies(boxes.data(), places);
         } else {
-            turned.read(boxes.data(), places);
+            transposed.read(boxes.data(), places);
         }
-        for (std::size_t a = 0; a < 3; ++a) reach[a] = hn::Max(reach[a], hn::Sub(turned.hi(a).v, turned.lo(a).v));
+        for (std::size_t a = 0; a < 3; ++a)
+            reach[a] = hn::Max(reach[a], hn::Sub(transposed.hi(a).v, transposed.lo(a).v));
     };
     std::size_t i = begin;
     for (; i + lanes <= end; i += lanes) {
@@ -208,17 +207,17 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
                 __builtin_prefetch(box + sizeof(Row) - 1);
             }
         }
-        Turned<Row> turned;
-        turn(turned, order + i);
-        turned.store_proxies(order + i);
-        for (std::size_t k = 0; k < 6; ++k)  // one zero, not two
-            ((k < 3 ? turned.lo(k) : turned.hi(k - 3)) + Wide::set(0)).store(columns[k] + i);
+        Transposed<Row> transposed;
+        turn(transposed, order + i);
+        transposed.store_proxies(order + i);
+        for (std::size_t k = 0; k < 6; ++k)  // maps -0 to 0
+            ((k < 3 ? transposed.lo(k) : transposed.hi(k - 3)) + Wide::set(0)).store(columns[k] + i);
     }
     if (i < end) {
         std::array<std::uint32_t, lanes> rest;
         for (std::size_t k = 0; k < lanes; ++k) rest[k] = order[std::min(i + k, end - 1)];
-        Turned<Row> turned;
-        turn(turned, rest.data());
+        Transposed<Row> transposed;
+        turn(transposed, rest.data());
         for (std::size_t k = 0; i + k < end; ++k) {
             const Aabb& box = box_of(boxes[rest[k]]);
             order[i + k] = proxy_of(boxes[rest[k]], rest[k]);
@@ -227,15 +226,15 @@ std::array<float, 3> gather_boxes_of(std::span<const Row> boxes, std::size_t beg
         }
     }
     std::array<float, 3> longest;
-    for (std::size_t a = 0; a < 3; ++a)  // rounded up: it must not be less than the true length
+    for (std::size_t a = 0; a < 3; ++a)  // rounded up to an upper bound
         longest[a] = std::nextafter(hn::GetLane(hn::MaxOfLanes(d, reach[a])), Aabb::infinity);
     return longest;
 }
 #endif
 
-/// Stores the counters of some boxes.
+/// Stores the keys of up to Wide::lanes boxes.
 HWY_INLINE void store_keys(const std::int32_t* counters, std::size_t count, float* keys) {
-    if (HWY_LIKELY(count == Wide::lanes)) {  // of a known length: one store
+    if (HWY_LIKELY(count == Wide::lanes)) {  // constant size: one store
         std::memcpy(keys, counters, Wide::lanes * sizeof *counters);
     } else {
         std::memcpy(keys, counters, count * sizeof *counters);
@@ -244,8 +243,8 @@ HWY_INLINE void store_keys(const std::int32_t* counters, std::size_t count, floa
 
 /// See row_grid::count_cells.
 template <class Row>
-Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
-                       std::uint32_t* HWY_RESTRICT table) {
+CountResult count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys,
+                           std::uint32_t* HWY_RESTRICT table) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
         store_keys(counters, count, keys + i);
         for (std::size_t k = 0; k < count; ++k) ++table[static_cast<std::uint32_t>(counters[k])];
@@ -253,7 +252,7 @@ Counted count_cells_of(std::span<const Row> boxes, const RowFit& fit, float* HWY
 }
 
 /// See row_grid::find_keys.
-template <class Row> Counted find_keys_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys) {
+template <class Row> CountResult find_keys_of(std::span<const Row> boxes, const RowFit& fit, float* HWY_RESTRICT keys) {
     return for_counters(boxes, fit, [=](std::size_t i, const std::int32_t* counters, std::size_t count) HWY_ATTR {
         store_keys(counters, count, keys + i);
     });
@@ -296,17 +295,17 @@ void select_keys_wide(std::span<const float> keys, std::uint32_t first, std::uin
     }
 }
 
-/// The same for each kind of list, by names that dispatch knows.
-Counted count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+/// Instances for each kind of list, for the dispatch table.
+CountResult count_moves_wide(std::span<const Move> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
 }
-Counted count_list_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
+CountResult count_list_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys, std::uint32_t* table) {
     return count_cells_of(boxes, fit, keys, table);
 }
-Counted moves_keys_wide(std::span<const Move> boxes, const RowFit& fit, float* keys) {
+CountResult moves_keys_wide(std::span<const Move> boxes, const RowFit& fit, float* keys) {
     return find_keys_of(boxes, fit, keys);
 }
-Counted list_keys_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
+CountResult list_keys_wide(std::span<const Aabb> boxes, const RowFit& fit, float* keys) {
     return find_keys_of(boxes, fit, keys);
 }
 std::array<float, 3> gather_moves_wide(std::span<const Move> boxes, std::size_t begin, std::size_t end,

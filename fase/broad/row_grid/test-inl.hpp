@@ -1,5 +1,5 @@
-/// Testing one box against records that lie in a row, for one SIMD target. Included inside its namespace by
-/// row_grid_kernels.cpp, hence no #pragma once and no includes.
+/// Tests of one box against consecutive records, for one SIMD target. kernels.cpp includes this file inside the
+/// target's namespace, hence no #pragma once and no includes.
 
 using FloatTag = hn::ScalableTag<float>;
 using WordTag = hn::RebindToUnsigned<FloatTag>;
@@ -9,7 +9,7 @@ using Lanes = hn::Mask<FloatTag>;
 constexpr std::size_t width = hn::MaxLanes(FloatTag());
 static_assert(width <= 16);
 
-/// The lanes that are marked, one bit each, lowest first.
+/// Returns a bit mask of the marked lanes, lowest first.
 HWY_INLINE std::uint32_t bits_of(Lanes lanes) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     return lanes.raw;
@@ -19,7 +19,7 @@ HWY_INLINE std::uint32_t bits_of(Lanes lanes) {
     return width > 8 ? bytes[0] | std::uint32_t{bytes[1]} << 8 : bytes[0];
 #endif
 }
-/// The lanes below zero, and those of -0, one bit each, lowest first.
+/// Returns a bit mask of the lanes with a set sign bit, lowest first.
 HWY_INLINE std::uint32_t negative_bits(Floats v) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     return _mm512_movepi32_mask(_mm512_castps_si512(v.raw));
@@ -28,7 +28,7 @@ HWY_INLINE std::uint32_t negative_bits(Floats v) {
     return bits_of(hn::RebindMask(FloatTag(), hn::Lt(hn::BitCast(d, v), hn::Zero(d))));
 #endif
 }
-/// The first `count`, of at most 16.
+/// Returns a mask of the first `count` bits, at most 16.
 HWY_INLINE std::uint32_t first_bits(std::size_t count) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     return _bzhi_u32(0xffff, static_cast<unsigned>(count));
@@ -37,7 +37,7 @@ HWY_INLINE std::uint32_t first_bits(std::size_t count) {
 #endif
 }
 
-/// The lanes of a vector that are marked, moved to its front.
+/// Compresses: moves the marked lanes of a vector to its front.
 HWY_INLINE Words front(Words all, std::uint32_t bits) {
     const WordTag d;
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4  // Highway 1.0 copies its table to the stack at each call
@@ -60,18 +60,18 @@ HWY_INLINE Words front(Words all, std::uint32_t bits) {
 #endif
 }
 
-/// Where the records of a range lie against a box, by the order of their rows along one axis. What follows from the
-/// order is not tested: a record of a later row begins behind where the box begins.
+/// The position of the rows of a range relative to the row of a box, along one axis. Comparisons that follow from it
+/// are skipped: a record of a later row begins after the begin of the box.
 enum class Side { Unknown, Later, Earlier };
 
-/// The columns of a set: x runs along the rows, y and z count them.
+/// The columns of a set: x is along the rows, y and z across.
 struct Columns {
     const float* lo_x;
-    std::size_t stride, stride3, stride5;  // few registers for six places
+    std::size_t stride, stride3, stride5;  // needs few registers for six columns
     const Proxy* proxies;
 
-    HWY_INLINE Columns(const float* first, std::size_t apart, const Proxy* of)
-        : lo_x(first), stride(apart), stride3(3 * apart), stride5(5 * apart), proxies(of) {}
+    HWY_INLINE Columns(const float* first, std::size_t distance, const Proxy* of)
+        : lo_x(first), stride(distance), stride3(3 * distance), stride5(5 * distance), proxies(of) {}
     explicit HWY_INLINE Columns(const RowView& set) : Columns(set.columns, set.stride, set.proxies) {}
     [[nodiscard]] HWY_INLINE const float* lo_y() const { return lo_x + stride; }
     [[nodiscard]] HWY_INLINE const float* lo_z() const { return lo_x + 2 * stride; }
@@ -80,13 +80,13 @@ struct Columns {
     [[nodiscard]] HWY_INLINE const float* hi_z() const { return lo_x + stride5; }
 };
 
-/// The box that asks, in all lanes; or several that ask, a lane each.
+/// A query box in all lanes, or several query boxes, one per lane.
 struct QueryBox {
     Floats minus_lo_x, minus_lo_y, minus_lo_z, hi_x, hi_y, hi_z;
     Words proxy;
 
     QueryBox() = default;
-    static HWY_INLINE QueryBox several(const Columns& c, std::size_t i) {
+    static HWY_INLINE QueryBox one_per_lane(const Columns& c, std::size_t i) {
         const FloatTag d;
         const float* const at = c.lo_x + i;
         QueryBox some;
@@ -111,15 +111,15 @@ struct QueryBox {
         hi_z = hn::Set(d, at[c.stride5]);
         proxy = hn::Set(WordTag(), c.proxies[i]);
     }
-    /// Which of the records from j on the box overlaps, a bit each; none that have been killed.
+    /// Returns a bit mask of the records from j on that the box overlaps; never tombstones.
     template <Side y, Side z> HWY_INLINE std::uint32_t overlapped(const Columns& c, std::size_t j) const {
         return ~negative_bits(gaps<y, z>(c, j)) & first_bits(width);
     }
 
 private:
-    /// Negative in the lanes where the boxes are apart along some axis: a difference is that of the true values, or 0
-    /// if they are equal, and NaN keeps its sign. Differences instead of comparisons: a processor makes more of them at
-    /// a time. What is in memory stands to the right, where x86 can read it in the same instruction.
+    /// Returns negative lanes where the boxes are separated on some axis: a rounded difference has the sign of the
+    /// exact one, or is 0 for equal values, and a NaN keeps its sign. Processors compute more differences than
+    /// comparisons per cycle. Memory operands are on the right, where x86 can load them in the same instruction.
     template <Side y, Side z> HWY_INLINE Floats gaps(const Columns& c, std::size_t j) const {
         const FloatTag d;
         const float* const at = c.lo_x + j;
@@ -138,22 +138,22 @@ private:
     }
 };
 
-/// Writes pairs, smaller proxy first, without a branch on how many there are. make_room() comes first, and before the
-/// asker: vectors do not stay in registers through a call.
+/// Writes pairs, smaller proxy first, without a branch on their number. Call reserve() first, and before the
+/// construction of the query box: vectors do not stay in registers across a call.
 class Writer {
 public:
     explicit HWY_INLINE Writer(PairBlock& block) : block_(block), at_(block.at), limit_(block.end()) {}
     HWY_INLINE ~Writer() { block_.at = at_; }
 
-    /// For so many vectors of records.
-    template <std::size_t vectors> HWY_INLINE void make_room() {
-        constexpr std::size_t wanted = (vectors + 2) * width;
-        static_assert(wanted <= PairBlock::most);
-        if (HWY_UNLIKELY(at_ + wanted > limit_)) at_ = block_.flush(at_);
+    /// Reserves capacity for the pairs of so many vectors of records.
+    template <std::size_t vectors> HWY_INLINE void reserve() {
+        constexpr std::size_t needed = (vectors + 2) * width;
+        static_assert(needed <= PairBlock::capacity);
+        if (HWY_UNLIKELY(at_ + needed > limit_)) at_ = block_.flush(at_);
     }
-    /// The marked lanes of two vectors of proxies.
+    /// Adds the pairs of the marked lanes of two vectors of proxies.
     HWY_INLINE void add(Words p, Words q, std::uint32_t bits) { add_front(front(p, bits), front(q, bits), bits); }
-    /// The marked ones of some records, all with one proxy.
+    /// Adds the pairs of one proxy with the marked ones of consecutive records.
     HWY_INLINE void add(Words query_box, const Proxy* others, std::uint32_t bits) {
         add_front(front(hn::LoadU(WordTag(), others), bits), query_box, bits);
     }
@@ -163,13 +163,13 @@ private:
     Pair* at_;
     Pair* limit_;
 
-    /// As many lanes as bits are set.
+    /// Adds the first lanes, as many as set bits.
     HWY_INLINE void add_front(Words p, Words q, std::uint32_t bits) {
         const auto pairs = static_cast<std::size_t>(std::popcount(bits));
         store(p, q, pairs, reinterpret_cast<std::uint32_t*>(at_));
         at_ += pairs;
     }
-    /// Lane by lane: smaller, larger, smaller, larger … A full vector more than `pairs` asks for may be written.
+    /// Stores interleaved: smaller, larger, smaller, larger … May write up to a vector more than `pairs`.
 #if HWY_TARGET == HWY_SCALAR
     static HWY_INLINE void store(Words p, Words q, std::size_t, std::uint32_t* to) {
         hn::StoreU(hn::Min(p, q), WordTag(), to);
@@ -195,7 +195,7 @@ private:
             hn::StoreU(high, d, to + width);
         }
     }
-    /// Of both words in one order and in the other, the larger has the larger one above.
+    /// Of the two concatenations of a pair, the larger one has the larger proxy in the high word.
     template <class V> static HWY_INLINE Words ordered(V p, V q) {
         const hn::Repartition<std::uint64_t, WordTag> d;
         const auto one = hn::Or(hn::PromoteTo(d, p), hn::ShiftLeft<32>(hn::PromoteTo(d, q)));
@@ -204,13 +204,13 @@ private:
 #endif
 };
 
-/// All records of begin <= j < end. Takes the box that asks from `make_query()`.
+/// Tests all records of begin <= j < end against the query box that `make_query()` constructs.
 template <Side y, Side z, class MakeQuery>
 HWY_INLINE void test_range(const MakeQuery& make_query, const Columns& c, std::size_t begin, std::size_t end,
                            Writer& out) {
     constexpr std::size_t vectors = 512 / width;
     for (std::size_t j = begin; j < end;) {
-        out.make_room<vectors>();
+        out.reserve<vectors>();
         const QueryBox query_box = make_query();
         const std::size_t stop = std::min(end, j + vectors * width);
         for (; j + width <= stop; j += width) out.add(query_box.proxy, c.proxies + j, query_box.overlapped<y, z>(c, j));
@@ -225,11 +225,11 @@ struct Range {
     std::uint32_t begin, end;
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
-/// No range that test_short_range() takes is as long; it finds room for so many vectors.
+/// test_short_range() takes only shorter ranges, and needs capacity for `short_vectors`.
 constexpr std::uint32_t long_range = 64;
 constexpr std::size_t short_vectors = long_range / width;
 
-/// The same for few records, for which there is room: the first vector is tested in any case.
+/// Same for a short range with reserved capacity: always tests the first vector.
 template <Side y, Side z>
 HWY_INLINE void test_short_range(const QueryBox& query_box, const Columns& c, Range range, Writer& out) {
     std::size_t j = range.begin, count = range.size();

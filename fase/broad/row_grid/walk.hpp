@@ -1,28 +1,28 @@
 #pragma once
-/// Going through a sorted set of boxes with a region: the rows and cells that its bounds reach, and what lies in them.
+/// Traversal of a sorted set with a region: the rows and cells that its bounds overlap, and their records.
 #include <algorithm>
 
 #include "fase/broad/row_grid/set.hpp"
 
 namespace fase::broad::row_grid {
 
-/// Cells along a row that are held against the region in one go.
-inline constexpr std::uint32_t cells_a_look = 4;
+/// Number of cells along a row that are tested against the region together.
+inline constexpr std::uint32_t cells_per_test = 4;
 
-/// What boxes that begin in cells `from` to `to` along an axis can cover: a little more than they do. Border cells hold
-/// what lies beyond them too.
+/// Sets the conservative bounds along an axis of boxes with lower corners in cells `from` to `to`. Border cells are
+/// unbounded outward.
 inline void cover(const RowLevel& level, int axis, std::uint32_t from, std::uint32_t to, Aabb& box) {
     const auto a = static_cast<std::size_t>(axis);
     if (!(level.per_cell[a] > 0)) return;
-    constexpr float room = 1.0f / 16;
+    constexpr float margin = 1.0f / 16;
     const float origin = level.origin[a];
-    if (from > 0) box.lo[axis] = origin + (static_cast<float>(from) - room) / level.per_cell[a];
+    if (from > 0) box.lo[axis] = origin + (static_cast<float>(from) - margin) / level.per_cell[a];
     if (static_cast<float>(to) < level.last[a])
-        box.hi[axis] = origin + (static_cast<float>(to) + 1 + room) / level.per_cell[a] + level.reach[a];
+        box.hi[axis] = origin + (static_cast<float>(to) + 1 + margin) / level.per_cell[a] + level.reach[a];
 }
 
-/// Calls test(begin, end) for ranges of records that hold all boxes of the level which touch the region; false when it
-/// did.
+/// Calls test(begin, end) for ranges of records that include all boxes of the level that touch the region. Stops and
+/// returns false when `test` returns false.
 template <Region R, class Test>
 bool walk_table(const RowView& set, const RowLevel& level, const R& region, Test&& test) {
     const auto [ax, ay, az] = set.axis;
@@ -40,8 +40,8 @@ bool walk_table(const RowView& set, const RowLevel& level, const R& region, Test
             cover(level, ay, y, y, part);
             cover(level, az, z, z, part);
             if (!region.touches(part)) continue;
-            for (std::uint32_t x = x0; x <= x1; x += cells_a_look) {
-                const std::uint32_t last = std::min(x1, x + cells_a_look - 1);
+            for (std::uint32_t x = x0; x <= x1; x += cells_per_test) {
+                const std::uint32_t last = std::min(x1, x + cells_per_test - 1);
                 if (row[x] == row[last + 1]) continue;
                 part.lo[ax] = -Aabb::infinity;
                 part.hi[ax] = Aabb::infinity;
@@ -53,8 +53,8 @@ bool walk_table(const RowView& set, const RowLevel& level, const R& region, Test
     return true;
 }
 
-/// Calls test(begin, end) for ranges of records that hold all boxes which touch the bounds, of a level whose rows stand
-/// in a list; false when it did.
+/// Calls test(begin, end) for ranges of records that include all boxes of a listed level that touch the bounds. Stops
+/// and returns false when `test` returns false.
 template <class Test> bool walk_list(const RowView& set, const RowLevel& level, Aabb bounds, Test&& test) {
     const auto [ax, ay, az] = set.axis;
     const auto at = [](int a) { return static_cast<std::size_t>(a); };
@@ -85,12 +85,12 @@ template <class Test> bool walk_list(const RowView& set, const RowLevel& level, 
     return true;
 }
 
-/// Visits each box that touches the region and is not killed; false when `visit` said stop.
+/// Visits each box that touches the region, tombstones excluded; false when `visit` returned false.
 template <Region R, class Visit> bool walk(const RowView& set, const R& region, Visit&& visit) {
     const auto test = [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const Aabb box = set.box(i);
-            if (region.touches(box) && set.proxies[i] != killed && !visit(set.proxies[i], box)) return false;
+            if (region.touches(box) && set.proxies[i] != tombstone && !visit(set.proxies[i], box)) return false;
         }
         return true;
     };
@@ -102,8 +102,8 @@ template <Region R, class Visit> bool walk(const RowView& set, const R& region, 
     return true;
 }
 
-/// Calls visit(level, cell, begin, end) for each cell of a table, and each row of a list, that holds a box. `cell`
-/// covers its boxes.
+/// Calls visit(level, cell, begin, end) for each cell of a table, and each row of a list, with a record. `cell`
+/// contains its boxes.
 template <class Visit> void for_each_cell(const RowView& set, Visit&& visit) {
     const auto [ax, ay, az] = set.axis;
     for (const RowLevel& level : set.levels) {

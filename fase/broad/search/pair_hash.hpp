@@ -1,5 +1,5 @@
 #pragma once
-/// A number for a set of pairs, whatever their order.
+/// An order-independent fingerprint of a set of pairs.
 #include <cstdint>
 #include <span>
 
@@ -8,21 +8,21 @@
 
 namespace fase::broad {
 
-/// Tells sets of pairs apart: equal sets have equal prints; others, duplicates and swapped pairs included, have not but
-/// for one chance in 2^128.
+/// Identifies a set of pairs. Equal sets have equal fingerprints; different sets, also those with duplicated or swapped
+/// pairs, have different ones except with probability 2^-128.
 struct PairSetFingerprint {
     std::uint64_t count = 0;
-    std::uint64_t sum = 0;    ///< of a number a pair
-    std::uint64_t other = 0;  ///< of another one
+    std::uint64_t sum = 0;    ///< sum of one hash per pair
+    std::uint64_t other = 0;  ///< sum of a second hash per pair
     friend bool operator==(const PairSetFingerprint&, const PairSetFingerprint&) = default;
-    /// The print of a set with the pairs of another, of which it has none, added.
+    /// Gives the fingerprint of the union with a disjoint set.
     PairSetFingerprint& operator+=(const PairSetFingerprint& more) {
         count += more.count;
         sum += more.sum;
         other += more.other;
         return *this;
     }
-    /// The print of a set without the pairs of another, all of which it has.
+    /// Gives the fingerprint of the difference from a subset.
     PairSetFingerprint& operator-=(const PairSetFingerprint& less) {
         count -= less.count;
         sum -= less.sum;
@@ -31,16 +31,16 @@ struct PairSetFingerprint {
     }
 };
 
-/// O(pairs); the order does not count.
-inline PairSetFingerprint print_of(std::span<const Pair> pairs) {
-    PairSetFingerprint print{.count = pairs.size()};
+/// Returns the fingerprint of the pairs, in any order. O(pairs).
+inline PairSetFingerprint fingerprint_of(std::span<const Pair> pairs) {
+    PairSetFingerprint fingerprint{.count = pairs.size()};
     for (const Pair pair : pairs) {
         const std::uint64_t key = std::uint64_t(pair.a) << 32 | pair.b;
         const std::uint64_t mixed = mix_bits(key + 0x9e3779b97f4a7c15ull);
-        print.sum += mixed;
-        print.other += mix_bits(mixed ^ 0xd1342543de82ef95ull);
+        fingerprint.sum += mixed;
+        fingerprint.other += mix_bits(mixed ^ 0xd1342543de82ef95ull);
     }
-    return print;
+    return fingerprint;
 }
 
 }  // namespace fase::broad

@@ -1,5 +1,5 @@
 #pragma once
-/// Where hot loops put the pairs they find before these reach the caller's vector.
+/// A local buffer for the pairs that a hot loop appends to the caller's vector.
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace fase::broad {
 
-/// Collects pairs in a block of its own and appends full blocks to `out`; the rest goes there when the sink dies. The
-/// compiler must assume that a caller's vector aliases the boxes that a loop reads; it knows better of this block.
+/// Collects pairs in a local block and appends full blocks to `out`; the destructor appends the rest. The compiler must
+/// assume that the caller's vector aliases the boxes that a loop reads; it knows that the local block does not.
 class PairSink {
 public:
     explicit PairSink(std::vector<Pair>& out) : out_(out) {}

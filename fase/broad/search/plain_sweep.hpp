@@ -1,5 +1,5 @@
 #pragma once
-/// All pairs by a plain sweep along one axis: a second judge, for sets that are too large for brute force.
+/// All pairs by a plain sweep along one axis: a second reference, for sets too large for brute force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,16 +10,16 @@
 
 namespace fase::broad {
 
-/// The axis along which the boxes' middles are spread most; boxes without finite middles do not count.
+/// Returns the axis with the largest variance of the box centres; ignores boxes without a finite centre.
 inline int axis_of_spread(std::span<const Move> boxes) {
     std::array<double, 3> sum{}, squares{};
     double count = 0;
     for (const Move& m : boxes) {
-        const Vec3 middle = centre(m.box);
-        if (!std::isfinite(middle.x) || !std::isfinite(middle.y) || !std::isfinite(middle.z)) continue;
+        const Vec3 c = centre(m.box);
+        if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) continue;
         ++count;
         for (int axis = 0; axis < 3; ++axis) {
-            const double x = middle[axis];
+            const double x = c[axis];
             sum[static_cast<std::size_t>(axis)] += x;
             squares[static_cast<std::size_t>(axis)] += x * x;
         }
@@ -30,12 +30,12 @@ inline int axis_of_spread(std::span<const Move> boxes) {
     return static_cast<int>(std::max_element(spread.begin(), spread.end()) - spread.begin());
 }
 
-/// Appends each pair of boxes that overlap and for which `wanted(p, q)` holds, once, smaller proxy first. All kinds of
-/// boxes are right: infinite and inverted ones; NaN overlaps nothing. Shares no code with the structures. Cost: a sort,
-/// and a test for each two boxes that overlap on the axis of widest spread. Source: Baraff 1992, Dynamic simulation of
-/// non-penetrating rigid bodies (sweep and prune), on one axis.
-template <class Wanted>
-void find_pairs_by_sweep(std::span<const Move> boxes, std::vector<Pair>& out, const Wanted& wanted) {
+/// Appends each overlapping pair with `filter(p, q)` once, smaller proxy first. Correct for all boxes: infinite,
+/// inverted; a NaN overlaps nothing. Shares no code with the structures. Cost: a sort, and one test for each two boxes
+/// that overlap on the axis of largest variance. Source: Baraff 1992, Dynamic simulation of non-penetrating rigid
+/// bodies (sweep and prune), on one axis.
+template <class Filter>
+void find_pairs_by_sweep(std::span<const Move> boxes, std::vector<Pair>& out, const Filter& filter) {
     const int axis = axis_of_spread(boxes);
     std::vector<Move> sorted;
     sorted.reserve(boxes.size());
@@ -47,11 +47,11 @@ void find_pairs_by_sweep(std::span<const Move> boxes, std::vector<Pair>& out, co
     for (std::size_t i = 0; i < sorted.size(); ++i) {
         const Move mine = sorted[i];
         for (std::size_t k = i + 1; k < sorted.size() && sorted[k].box.lo[axis] <= mine.box.hi[axis]; ++k)
-            if (overlaps(mine.box, sorted[k].box) && wanted(mine.proxy, sorted[k].proxy))
+            if (overlaps(mine.box, sorted[k].box) && filter(mine.proxy, sorted[k].proxy))
                 sink.add(mine.proxy, sorted[k].proxy);
     }
 }
-/// The same for all pairs.
+/// Same without a filter.
 inline void find_pairs_by_sweep(std::span<const Move> boxes, std::vector<Pair>& out) {
     find_pairs_by_sweep(boxes, out, [](Proxy, Proxy) { return true; });
 }

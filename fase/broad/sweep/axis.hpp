@@ -1,14 +1,14 @@
 #pragma once
-/// Along which axis boxes are best sorted.
+/// Chooses the sort axis of a sweep.
 #include <span>
 
 #include "fase/broad/structure.hpp"
 
 namespace fase::broad {
 
-/// The axis (0 to 2) on which the fewest boxes overlap each other, judged by a sample of at most 128 of the boxes; of
-/// equals the one whose boxes lie farthest apart, and then `now`. Keeps `now` when the others are not clearly better,
-/// so that the answer does not flutter.
-[[nodiscard]] int best_sweep_axis(std::span<const Move> boxes, int now);
+/// Returns the axis (0 to 2) with the fewest overlaps in a sample of at most 128 boxes; of equal axes the one with the
+/// largest variance, then `current`. Keeps `current` unless another axis is clearly better, so that the result does not
+/// alternate.
+[[nodiscard]] int best_sweep_axis(std::span<const Move> boxes, int current);
 
 }  // namespace fase::broad

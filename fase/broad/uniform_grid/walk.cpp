@@ -1,4 +1,4 @@
-/// Where a ray enters and leaves the slices of a grid.
+/// Computes where a ray enters and leaves the slices of a grid.
 #include "fase/broad/uniform_grid/walk.hpp"
 
 #include <cmath>
@@ -20,20 +20,20 @@ RayCells::RayCells(const Ray& ray, Vec3 before, Vec3 after, const GridFrame& fra
     const bool forward = direction_[axis_] >= 0;
     step_ = forward ? 1 : -1;
 
-    // How far everything of interest is, and so how large the roundings may be, those of the carried box to float too.
+    // Bounds the magnitude of all coordinates, and with it the rounding errors, also those of the swept box to float.
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double lo = frame.edge(within.lo[static_cast<std::size_t>(axis)], axis);
         const double hi = frame.edge(within.hi[static_cast<std::size_t>(axis)] + 1, axis);
-        const double most =
+        const double largest =
             std::fmax(std::fabs(lo), std::fabs(hi)) + std::fabs(origin_[axis]) - before_[axis] + after_[axis];
-        slack_[axis] = most;
-        if (axis == axis_) reach = std::fmin(length_, 2 * most);
+        slack_[axis] = largest;
+        if (axis == axis_) reach = std::fmin(length_, 2 * largest);
     }
     for (int axis = 0; axis < 3; ++axis)
         slack_[axis] = 0x1p-20 * (slack_[axis] + reach * std::fabs(direction_[axis])) + 1e-30;
 
-    // Slices from the one where the ray begins, unless it begins before or behind all of them.
+    // The first slice is that of the start of the ray, clamped to the range.
     const double start = origin_[axis_] + (forward ? before_[axis_] - slack_[axis_] : after_[axis_] + slack_[axis_]);
     const double last = origin_[axis_] + direction_[axis_] * std::fmin(length_, 4 * reach) +
                         (forward ? after_[axis_] + slack_[axis_] : before_[axis_] - slack_[axis_]);
@@ -75,7 +75,7 @@ CellRange RayCells::slice(std::int64_t i) const {
         cells.lo[k] = frame_.cell((a < b ? a : b) + before_[axis] - slack_[axis], axis);
         cells.hi[k] = frame_.cell((a < b ? b : a) + after_[axis] + slack_[axis], axis);
     }
-    return common_part(cells, within_);
+    return intersection(cells, within_);
 }
 
 }  // namespace fase::broad

@@ -1,4 +1,4 @@
-/// Builds wide trees: a binary cut is repeated until eight children stand side by side.
+/// Implements the builds of wide trees.
 #include "fase/broad/wide_bvh/build.hpp"
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace fase::broad::wide {
 namespace {
 
-/// Items that are to become one child.
+/// The items of one child.
 struct Range {
     std::uint32_t first = 0, count = 0;
-    float cost = 0;  // the dearest is cut first
+    float cost = 0;  // the most expensive range is split first
 };
 
 /// The children of a node, in the order of their items.
@@ -22,11 +22,11 @@ public:
     explicit Children(Range all) : count_(1) { ranges_[0] = all; }
     [[nodiscard]] std::span<const Range> all() const { return {ranges_.data(), count_}; }
 
-    /// Cuts until there are eight or none holds more than eight items; then puts whole children that fit, item by item,
-    /// where there is room.
+    /// Splits until there are eight children or none has more than eight items. Then replaces children by their single
+    /// items where these fit.
     template <class Cut> void divide(const Cut& cut) {
         while (count_ < width) {
-            const std::size_t at = dearest([](const Range& range) { return range.count > width; });
+            const std::size_t at = most_expensive([](const Range& range) { return range.count > width; });
             if (at == count_) break;
             const auto [left, right] = cut(ranges_[at]);
             std::copy_backward(ranges_.begin() + at + 1, ranges_.begin() + count_, ranges_.begin() + count_ + 1);
@@ -35,15 +35,16 @@ public:
             ++count_;
         }
         for (;;) {
-            const std::size_t room = width - count_ + 1;
-            const std::size_t at = dearest([&](const Range& range) { return range.count > 1 && range.count <= room; });
+            const std::size_t free_children = width - count_ + 1;
+            const std::size_t at =
+                most_expensive([&](const Range& range) { return range.count > 1 && range.count <= free_children; });
             if (at == count_) return;
-            const Range whole = ranges_[at];
-            const std::size_t more = whole.count - 1;
+            const Range replaced = ranges_[at];
+            const std::size_t added = replaced.count - 1;
             std::copy_backward(ranges_.begin() + at + 1, ranges_.begin() + count_,
-                               ranges_.begin() + count_ + static_cast<std::ptrdiff_t>(more));
-            for (std::uint32_t i = 0; i < whole.count; ++i) ranges_[at + i] = {whole.first + i, 1, 0};
-            count_ += more;
+                               ranges_.begin() + count_ + static_cast<std::ptrdiff_t>(added));
+            for (std::uint32_t i = 0; i < replaced.count; ++i) ranges_[at + i] = {replaced.first + i, 1, 0};
+            count_ += added;
         }
     }
 
@@ -51,17 +52,17 @@ private:
     std::array<Range, width> ranges_;
     std::size_t count_;
 
-    /// The first of those that cost most among the wanted; count_ when there is none.
-    template <class Wanted> [[nodiscard]] std::size_t dearest(const Wanted& wanted) const {
+    /// Returns the first of the most expensive ranges that fulfil the condition; count_ when there is none.
+    template <class Condition> [[nodiscard]] std::size_t most_expensive(const Condition& condition) const {
         std::size_t best = count_;
         for (std::size_t i = 0; i < count_; ++i) {
-            if (wanted(ranges_[i]) && (best == count_ || ranges_[i].cost > ranges_[best].cost)) best = i;
+            if (condition(ranges_[i]) && (best == count_ || ranges_[i].cost > ranges_[best].cost)) best = i;
         }
         return best;
     }
 };
 
-/// `cut(range)` gives the two parts of a range of more than eight items.
+/// Appends a tree to the forest. `cut(range)` returns the two parts of a range of more than eight items.
 template <class Cut> void append(std::span<const BuildItem> items, Forest& forest, const Cut& cut) {
     struct Task {
         Range range;
@@ -71,11 +72,11 @@ template <class Cut> void append(std::span<const BuildItem> items, Forest& fores
     forest.ids.resize(base + items.size());
     forest.roots.push_back(static_cast<std::uint32_t>(forest.nodes.size()));
     LocalStack<Task, 256> open;
-    open.push({{0, static_cast<std::uint32_t>(items.size()), 0}, none});
+    open.push({{0, static_cast<std::uint32_t>(items.size()), 0}, no_index});
     while (!open.empty()) {
         const Task task = open.pop();
         const auto index = static_cast<std::uint32_t>(forest.nodes.size());
-        if (task.parent != none) forest.nodes[task.parent / width].link[task.parent % width] = index;
+        if (task.parent != no_index) forest.nodes[task.parent / width].link[task.parent % width] = index;
         Children children(task.range);
         children.divide(cut);
         const std::uint32_t end = base + task.range.first + task.range.count;
@@ -87,7 +88,7 @@ template <class Cut> void append(std::span<const BuildItem> items, Forest& fores
         for (std::uint32_t i = 0; i < width; ++i) {
             const bool used = i < all.size(), leaf = used && all[i].count == 1;
             node.set_box(i, leaf ? items[all[i].first].box : Aabb{});
-            node.link[i] = leaf ? leaf_bit | items[all[i].first].proxy : none;
+            node.link[i] = leaf ? leaf_bit | items[all[i].first].proxy : no_index;
             node.first[i] = used ? base + all[i].first : end;
             if (leaf) forest.ids[node.first[i]] = items[all[i].first].proxy;
         }
@@ -109,7 +110,7 @@ void append_by_area(std::span<BuildItem> items, Forest& forest) {
 }
 
 void append_by_morton(std::span<BuildItem> items, Forest& forest, BuildScratch& scratch) {
-    sort_by_morton(items, scratch.keys, scratch.spare_keys);
+    sort_by_morton(items, scratch.keys, scratch.scratch_keys);
     scratch.sorted.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) scratch.sorted[i] = items[scratch.keys[i].index];
     const std::span<const MortonKey> keys = scratch.keys;

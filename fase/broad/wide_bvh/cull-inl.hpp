@@ -1,77 +1,77 @@
-/// What a camera sees, whole branches at a time. Included inside the namespace of each target.
+/// Frustum culling, branch by branch. Included inside the namespace of each SIMD target.
 ///
-/// A plane is tested in float with a margin that covers all roundings: a child is surely outside it, surely inside, or
-/// neither. For boxes where that leaves the answer open, the exact test decides.
+/// Planes are tested in float with a margin that covers all rounding errors: a child is definitely outside, definitely
+/// inside, or undecided. The exact test decides undecided boxes.
 
-/// Ranges of ids on their way to the caller, merged where they meet.
+/// Passes ranges of ids to the caller; merges adjacent ranges.
 class Runs {
 public:
-    Runs(const Forest& forest, Take take) : forest_(forest), take_(take) {}
-    HWY_INLINE void add(std::uint32_t first, std::uint32_t end, bool whole) {
-        if (first == end_ && whole == whole_) {
+    Runs(const Forest& forest, TakeRange take) : forest_(forest), take_(take) {}
+    HWY_INLINE void add(std::uint32_t first, std::uint32_t end, bool inside) {
+        if (first == end_ && inside == inside_) {
             end_ = end;
             return;
         }
         flush();
         first_ = first;
         end_ = end;
-        whole_ = whole;
+        inside_ = inside;
     }
     void flush() {
         if (first_ == end_) return;
         std::uint32_t from = first_;
-        if (!forest_.holes.empty()) {
-            const auto& holes = forest_.holes;
-            for (auto hole = std::lower_bound(holes.begin(), holes.end(), first_); hole != holes.end() && *hole < end_;
-                 ++hole) {
-                hand_over(from, *hole);
-                from = *hole + 1;
+        if (!forest_.free_slots.empty()) {
+            const auto& free_slots = forest_.free_slots;
+            for (auto slot = std::lower_bound(free_slots.begin(), free_slots.end(), first_);
+                 slot != free_slots.end() && *slot < end_; ++slot) {
+                emit(from, *slot);
+                from = *slot + 1;
             }
         }
-        hand_over(from, end_);
+        emit(from, end_);
         first_ = end_ = 0;
     }
 
 private:
     const Forest& forest_;
-    Take take_;
+    TakeRange take_;
     std::uint32_t first_ = 0, end_ = 0;
-    bool whole_ = false;
+    bool inside_ = false;
 
-    HWY_INLINE void hand_over(std::uint32_t from, std::uint32_t to) {
-        if (from < to) take_({forest_.ids.data() + from, to - from}, whole_);
+    HWY_INLINE void emit(std::uint32_t from, std::uint32_t to) {
+        if (from < to) take_({forest_.ids.data() + from, to - from}, inside_);
     }
 };
 
 struct CullPlane {
     float normal[3];
-    float offset, margin_offset, margin_size;  // the margin: margin_offset + margin_size * (size of coordinates)
-    std::size_t near_row[3], far_row[3];       // of the corners least and most far along the normal
+    float offset, margin_offset, margin_size;  // margin: margin_offset + margin_size * (magnitude of coordinates)
+    std::size_t near_row[3], far_row[3];       // planes of the corners nearest and farthest along the normal
 };
 
 struct BranchToCull {
     std::uint32_t node;
-    std::uint32_t planes;  // a bit for each plane that not all of the node is surely inside of; bounds_bit likewise
+    std::uint32_t planes;  // one bit per plane that the node is not definitely inside; bounds_bit for the bounds
 };
 constexpr std::uint32_t bounds_bit = 64;
 
-/// What is known of eight children, a bit each.
-struct Verdict {
-    std::uint8_t met = 0xff;       // not surely outside
-    std::uint8_t inside = 0xff;    // surely inside of all planes
-    std::uint8_t touching = 0xff;  // surely not outside of any
-    std::uint8_t cut = 0;          // surely not inside of all
-    std::uint8_t inside_of[7];     // each plane, and the bounds; where it was asked
+/// Test results of eight children, one bit each.
+struct PlaneTests {
+    std::uint8_t visible = 0xff;   // not definitely outside
+    std::uint8_t inside = 0xff;    // definitely inside all planes
+    std::uint8_t touching = 0xff;  // definitely not outside any plane
+    std::uint8_t cut = 0;          // definitely not inside all planes
+    std::uint8_t inside_of[7];     // by plane, and the bounds; set only for tested planes
 };
-struct JudgedBranch {
+struct TestedBranch {
     BranchToCull branch;
-    Verdict verdict;
+    PlaneTests tests;
 };
 
-/// `OneMargin`: coordinates are so small that one margin does for all.
+/// `OneMargin`: coordinates are small enough for one constant margin per plane.
 template <bool OneMargin> class Culling {
 public:
-    Culling(const Forest& forest, const FrustumRegion& region, float largest, Take take)
+    Culling(const Forest& forest, const FrustumRegion& region, float largest, TakeRange take)
         : forest_(forest), region_(region), runs_(forest, take), bounds_(finite(region.bounds())) {
         for (const Frustum::Side& side : region.frustum().sides) {
             const bool bounds_nothing = side.normal == Vec3d{} && side.offset >= 0;
@@ -81,10 +81,10 @@ public:
     void run() {
         const std::uint32_t all = ((1u << plane_count_) - 1) | bounds_bit;
         for (std::size_t i = forest_.roots.size(); i-- > 0;)
-            open_.push({{forest_.roots[i], all}, judge(forest_.nodes[forest_.roots[i]], all)});
+            open_.push({{forest_.roots[i], all}, test_planes(forest_.nodes[forest_.roots[i]], all)});
         while (!open_.empty()) {
-            const JudgedBranch next = open_.pop();
-            sort_out(next.branch, next.verdict);
+            const TestedBranch next = open_.pop();
+            classify(next.branch, next.tests);
         }
         runs_.flush();
     }
@@ -96,15 +96,15 @@ private:
     Aabb bounds_;
     CullPlane planes_[6];
     std::uint32_t plane_count_ = 0;
-    LocalStack<JudgedBranch, 256> open_;  // judged with their siblings, so that their children are on their way
+    LocalStack<TestedBranch, 256> open_;  // tested with their siblings, after their children are prefetched
 
-    /// Finite, so that unused children do not overlap it.
+    /// Makes a box finite, so that unused children do not overlap it.
     static Aabb finite(const Aabb& box) {
         const float most = std::numeric_limits<float>::max();
         return {max(box.lo, {-most, -most, -most}), min(box.hi, {most, most, most})};
     }
     static CullPlane plane_of(const Frustum::Side& side, float largest) {
-        constexpr double share = 0x1p-20;  // of all that is summed; at most 5 * 2^-24 is lost
+        constexpr double relative_margin = 0x1p-20;  // of the sum of magnitudes; the error is at most 5 * 2^-24
         CullPlane plane;
         double steepest = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -116,11 +116,11 @@ private:
         }
         plane.offset = static_cast<float>(side.offset);
         const double sizes = OneMargin ? 3 * steepest * double(largest) : 0.0;
-        plane.margin_offset = static_cast<float>(share * (std::abs(side.offset) + sizes) + 1e-36);
-        plane.margin_size = static_cast<float>(share * steepest);
+        plane.margin_offset = static_cast<float>(relative_margin * (std::abs(side.offset) + sizes) + 1e-36);
+        plane.margin_size = static_cast<float>(relative_margin * steepest);
         return plane;
     }
-    /// The corners of eight children along a normal, for the rows given.
+    /// Dot products of a normal with one corner of each of eight children; `rows` selects the corners.
     static HWY_INLINE V along(const CullPlane& plane, const float* planes, const std::size_t* rows) {
         return load(planes + rows[0]) * splat(plane.normal[0]) + load(planes + rows[1]) * splat(plane.normal[1]) +
                load(planes + rows[2]) * splat(plane.normal[2]);
@@ -133,14 +133,14 @@ private:
         return sum;
     }
 
-    HWY_INLINE Verdict judge(const Node& node, std::uint32_t asked) const {
-        Verdict verdict;
-        if ((asked & bounds_bit) != 0) {
+    HWY_INLINE PlaneTests test_planes(const Node& node, std::uint32_t to_test) const {
+        PlaneTests tests;
+        if ((to_test & bounds_bit) != 0) {
             const WideBox box(bounds_);
-            verdict.met = static_cast<std::uint8_t>(box.overlaps(node));
-            verdict.inside_of[6] = static_cast<std::uint8_t>(box.contains(node));
+            tests.visible = static_cast<std::uint8_t>(box.overlaps(node));
+            tests.inside_of[6] = static_cast<std::uint8_t>(box.contains(node));
         }
-        for (std::uint32_t left = asked & (bounds_bit - 1); left != 0;) {
+        for (std::uint32_t left = to_test & (bounds_bit - 1); left != 0;) {
             const std::uint32_t p = take_bit(left);
             const CullPlane& plane = planes_[p];
             std::uint32_t out = 0, in = 0, touching = 0, cut = 0;
@@ -155,33 +155,33 @@ private:
                 cut |= bits_of(hn::Gt(max_far, past)) << i;
                 in |= bits_of(hn::Lt(max_far, before)) << i;
             }
-            verdict.met = static_cast<std::uint8_t>(verdict.met & ~out);
-            verdict.inside = static_cast<std::uint8_t>(verdict.inside & in);
-            verdict.touching = static_cast<std::uint8_t>(verdict.touching & touching);
-            verdict.cut = static_cast<std::uint8_t>(verdict.cut | cut);
-            verdict.inside_of[p] = static_cast<std::uint8_t>(in);
+            tests.visible = static_cast<std::uint8_t>(tests.visible & ~out);
+            tests.inside = static_cast<std::uint8_t>(tests.inside & in);
+            tests.touching = static_cast<std::uint8_t>(tests.touching & touching);
+            tests.cut = static_cast<std::uint8_t>(tests.cut | cut);
+            tests.inside_of[p] = static_cast<std::uint8_t>(in);
         }
-        for (std::uint32_t open = verdict.met & ~verdict.inside & 0xffu; open != 0;) {
+        for (std::uint32_t open = tests.visible & ~tests.inside & 0xffu; open != 0;) {
             const std::uint32_t link = node.link[take_bit(open)];
             if ((link & leaf_bit) != 0) continue;
             const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&forest_.nodes[link]);
             for (std::size_t line = 0; line < sizeof(Node); line += 64) hwy::Prefetch(bytes + line);
         }
-        return verdict;
+        return tests;
     }
 
-    void sort_out(BranchToCull branch, const Verdict& verdict) {
+    void classify(BranchToCull branch, const PlaneTests& tests) {
         const Node& node = forest_.nodes[branch.node];
-        JudgedBranch below[width];
+        TestedBranch below[width];
         std::uint32_t below_count = 0;
-        for (std::uint32_t met = verdict.met; met != 0;) {
-            const std::uint32_t child = take_bit(met), bit = 1u << child, link = node.link[child];
-            if (link == none) continue;
+        for (std::uint32_t visible = tests.visible; visible != 0;) {
+            const std::uint32_t child = take_bit(visible), bit = 1u << child, link = node.link[child];
+            if (link == no_index) continue;
             const std::uint32_t first = node.first[child];
             if ((link & leaf_bit) != 0) {
-                if ((verdict.inside & bit) != 0) {
+                if ((tests.inside & bit) != 0) {
                     runs_.add(first, first + 1, true);
-                } else if ((verdict.touching & verdict.cut & bit) != 0) {
+                } else if ((tests.touching & tests.cut & bit) != 0) {
                     runs_.add(first, first + 1, false);
                 } else if (const Aabb box = node.box(child); region_.touches(box)) {
                     runs_.add(first, first + 1, region_.contains(box));
@@ -191,7 +191,7 @@ private:
             std::uint32_t planes = 0;
             for (std::uint32_t left = branch.planes; left != 0;) {
                 const std::uint32_t p = take_bit(left);
-                planes |= (~static_cast<std::uint32_t>(verdict.inside_of[p]) >> child & 1) << p;
+                planes |= (~static_cast<std::uint32_t>(tests.inside_of[p]) >> child & 1) << p;
             }
             if (planes == 0) {
                 runs_.add(first, forest_.end_of(branch.node, child), true);
@@ -200,16 +200,16 @@ private:
             }
         }
         for (std::uint32_t i = 0; i < below_count; ++i)
-            below[i].verdict = judge(forest_.nodes[below[i].branch.node], below[i].branch.planes);
-        open_.make_room(width);
+            below[i].tests = test_planes(forest_.nodes[below[i].branch.node], below[i].branch.planes);
+        open_.reserve_more(width);
         while (below_count != 0) open_.push_if(true, below[--below_count]);
     }
 };
 
-void cull_frustum(const Forest& forest, const FrustumRegion& region, Take take) {
+void cull_frustum(const Forest& forest, const FrustumRegion& region, TakeRange take) {
     float largest = 0;
     for (const std::uint32_t root : forest.roots) {
-        const Aabb all = forest.nodes[root].united();
+        const Aabb all = forest.nodes[root].merged();
         if (is_empty(all)) continue;
         for (int axis = 0; axis < 3; ++axis)
             largest = std::max(largest, std::max(std::abs(all.lo[axis]), std::abs(all.hi[axis])));

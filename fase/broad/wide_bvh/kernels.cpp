@@ -1,4 +1,4 @@
-/// Compiles the searches for every SIMD target and picks one at run time.
+/// Compiles the searches for every SIMD target and selects one at run time.
 // Vectors of unknown size cannot be members; such targets fall back to 128 bits.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace fase::broad::wide::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-// Nothing is fused: the order of visits is then the same on every processor.
+// No fused operations, so that the order of visits is the same on every processor.
 #include "fase/broad/wide_bvh/lanes-inl.hpp"
 //
 #include "fase/broad/wide_bvh/cull-inl.hpp"
@@ -36,7 +36,7 @@ HWY_EXPORT(nearest_to_point);
 HWY_EXPORT(visit_overlapping);
 HWY_EXPORT(cull_frustum);
 HWY_EXPORT(descend);
-HWY_EXPORT(open_one);
+HWY_EXPORT(expand_node_pair);
 HWY_EXPORT(refit_nodes);
 
 namespace {
@@ -47,32 +47,32 @@ template <class V> double size_of(const V& v) {
 
 }  // namespace
 
-bool is_plain(const RayMeasure& measure) {
+bool fits_float(const RayMeasure& measure) {
     const Ray& ray = measure.ray();
     const double size =
         size_of(ray.origin) + size_of(measure.before()) + size_of(measure.after()) + size_of(ray.direction);
     return size <= 1e18 && ray.length >= 0;  // false for NaN
 }
 
-bool is_plain(const PointMeasure& measure) { return size_of(measure.point()) <= 1e18 && measure.radius() >= 0; }
+bool fits_float(const PointMeasure& measure) { return size_of(measure.point()) <= 1e18 && measure.radius() >= 0; }
 
-void nearest_first(const Forest& forest, const RayMeasure& measure, float limit, Near visit) {
+void nearest_first(const Forest& forest, const RayMeasure& measure, float limit, VisitNear visit) {
     HWY_DYNAMIC_DISPATCH(nearest_to_ray)(forest, measure, limit, visit);
 }
-void nearest_first(const Forest& forest, const PointMeasure& measure, float limit, Near visit) {
+void nearest_first(const Forest& forest, const PointMeasure& measure, float limit, VisitNear visit) {
     HWY_DYNAMIC_DISPATCH(nearest_to_point)(forest, measure, limit, visit);
 }
-bool traverse(const Forest& forest, const Aabb& box, Found visit) {
+bool traverse(const Forest& forest, const Aabb& box, VisitOverlap visit) {
     return HWY_DYNAMIC_DISPATCH(visit_overlapping)(forest, box, visit);
 }
-void cull(const Forest& forest, const FrustumRegion& region, Take take) {
+void cull(const Forest& forest, const FrustumRegion& region, TakeRange take) {
     HWY_DYNAMIC_DISPATCH(cull_frustum)(forest, region, take);
 }
-void find_pairs(const Forest& one, const Forest& two, Meeting start, bool awake_only, PairSink& sink) {
+void find_pairs(const Forest& one, const Forest& two, NodePair start, bool awake_only, PairSink& sink) {
     HWY_DYNAMIC_DISPATCH(descend)(one, two, start, awake_only, sink);
 }
-void open_meeting(const Forest& one, const Forest& two, Meeting start, PairSink& sink, std::vector<Meeting>& left) {
-    HWY_DYNAMIC_DISPATCH(open_one)(one, two, start, sink, left);
+void expand_pair(const Forest& one, const Forest& two, NodePair start, PairSink& sink, std::vector<NodePair>& left) {
+    HWY_DYNAMIC_DISPATCH(expand_node_pair)(one, two, start, sink, left);
 }
 double refit(Forest& forest, std::uint32_t begin) { return HWY_DYNAMIC_DISPATCH(refit_nodes)(forest, begin); }
 

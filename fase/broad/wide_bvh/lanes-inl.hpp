@@ -1,5 +1,5 @@
-/// Eight floats in one, two or eight vectors. Included inside the namespace of each target, hence no #pragma once and
-/// no includes.
+/// SIMD helpers: eight floats in one, two or eight vectors. Included inside the namespace of each target, hence no
+/// #pragma once and no includes.
 
 using Floats = hn::CappedTag<float, width>;
 using V = hn::Vec<Floats>;
@@ -10,20 +10,20 @@ static_assert(width % lanes == 0);
 HWY_INLINE V load(const float* p) { return hn::Load(Floats(), p); }
 HWY_INLINE V splat(float value) { return hn::Set(Floats(), value); }
 
-/// A bit for each lane.
+/// Returns one bit per lane.
 HWY_INLINE std::uint32_t bits_of(M mask) {
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(Floats(), mask, bits);
     return bits[0];
 }
-/// The lowest bit's number; it is taken out.
+/// Removes the lowest set bit and returns its number.
 HWY_INLINE std::uint32_t take_bit(std::uint32_t& bits) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
     bits &= bits - 1;
     return bit;
 }
 
-/// A box in all lanes, to be tested against the children of nodes.
+/// A box in all lanes, for tests against the children of nodes.
 struct WideBox {
     V plane[6];
     HWY_INLINE WideBox(const Node& node, std::uint32_t child) {
@@ -35,7 +35,7 @@ struct WideBox {
             plane[3 + i] = splat(box.hi[i]);
         }
     }
-    /// Which children it overlaps, a bit each.
+    /// Returns the children that it overlaps, one bit each.
     HWY_INLINE std::uint32_t overlaps(const Node& node) const {
         std::uint32_t bits = 0;
         for (int i = 0; i < width; i += lanes) {
@@ -49,7 +49,7 @@ struct WideBox {
         }
         return bits;
     }
-    /// Which children it contains, a bit each.
+    /// Returns the children that it contains, one bit each.
     HWY_INLINE std::uint32_t contains(const Node& node) const {
         std::uint32_t bits = 0;
         for (int i = 0; i < width; i += lanes) {

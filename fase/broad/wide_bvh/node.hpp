@@ -1,24 +1,25 @@
 #pragma once
-/// The nodes of the wide tree, and what its searches read of it.
+/// Nodes and node arrays of the wide BVH.
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "fase/broad/builders/binned_split.hpp"
 #include "fase/broad/structure.hpp"
+#include "fase/core/no_index.hpp"
 
 namespace fase::broad::wide {
 
-inline constexpr int width = 8;  ///< children a node
+inline constexpr int width = 8;  ///< children per node
 inline constexpr std::uint32_t leaf_bit = 0x80000000;
-inline constexpr std::uint32_t none = 0xffffffff;  ///< an unused child; it counts as a leaf
 
-/// Eight children side by side, four cache lines. A child is one box, exactly as it was stored, or a node below, with
-/// the union of what it holds. Unused children have a box that meets nothing: lo infinite, hi minus infinite.
+/// Eight children in four cache lines, in structure-of-arrays layout. A child is one box, exactly as stored, or a child
+/// node with the union of its boxes. An unused child has link `no_index`, counts as a leaf, and has a box that overlaps
+/// nothing: lo infinite, hi minus infinite.
 struct alignas(64) Node {
     float plane[6][width];       ///< lo x, y, z, hi x, y, z
-    std::uint32_t link[width];   ///< leaf_bit | proxy; or the node below; or none
-    std::uint32_t first[width];  ///< where in the ids the child's boxes begin
+    std::uint32_t link[width];   ///< leaf_bit | proxy; or a node; or no_index
+    std::uint32_t first[width];  ///< index in Forest::ids of the first box of the child
     [[nodiscard]] bool is_leaf(std::uint32_t child) const { return (link[child] & leaf_bit) != 0; }
     [[nodiscard]] Aabb box(std::uint32_t child) const {
         return {{plane[0][child], plane[1][child], plane[2][child]},
@@ -30,31 +31,31 @@ struct alignas(64) Node {
             plane[axis + 3][child] = box.hi[axis];
         }
     }
-    /// The union of all children; the empty box when there is none.
-    [[nodiscard]] Aabb united() const {
-        Aabb sum;
-        for (std::uint32_t i = 0; i < width; ++i) sum = merge(sum, box(i));
-        return sum;
+    /// The union of all children; the empty box without children.
+    [[nodiscard]] Aabb merged() const {
+        Aabb all;
+        for (std::uint32_t i = 0; i < width; ++i) all = merge(all, box(i));
+        return all;
     }
 };
 static_assert(sizeof(Node) == 256);
 
-/// A child of a node, as one number: 8 * node + child.
+/// A child of a node as one number: 8 * node + child.
 using Place = std::uint32_t;
 constexpr Place place_of(std::uint32_t node, std::uint32_t child) { return node * width + child; }
 
-/// One tree or several (each a root, and all that follows up to the next root), in depth-first order: a node stands
-/// before its children, and the boxes below a node are in a row in `ids`.
+/// One or more trees in depth-first order; a tree extends from its root to the next root. A node precedes its children,
+/// and the boxes below a node are contiguous in `ids`.
 struct Forest {
     std::vector<Node> nodes;
-    std::vector<Place> parents;       ///< by node: where it hangs; none for a root
-    std::vector<std::uint32_t> ends;  ///< by node: behind its last box in `ids`
-    std::vector<std::uint8_t> awake;  ///< by node, a bit a child: is anything there awake?
+    std::vector<Place> parents;       ///< by node: its place in the parent; no_index for a root
+    std::vector<std::uint32_t> ends;  ///< by node: index after its last box in `ids`
+    std::vector<std::uint8_t> awake;  ///< by node, one bit per child: is a box there awake?
     std::vector<Proxy> ids;
     std::vector<std::uint32_t> roots;
-    std::vector<std::uint32_t> holes;  ///< places in `ids` whose box is gone, ascending
+    std::vector<std::uint32_t> free_slots;  ///< slots of `ids` whose box was removed, ascending after commit()
 
-    /// The memory stays.
+    /// Removes everything and keeps the memory.
     void clear() {
         nodes.clear();
         parents.clear();
@@ -62,20 +63,20 @@ struct Forest {
         awake.clear();
         ids.clear();
         roots.clear();
-        holes.clear();
+        free_slots.clear();
     }
     [[nodiscard]] std::size_t bytes() const {
         return nodes.capacity() * sizeof(Node) + awake.capacity() +
-               (parents.capacity() + ends.capacity() + ids.capacity() + roots.capacity() + holes.capacity()) *
+               (parents.capacity() + ends.capacity() + ids.capacity() + roots.capacity() + free_slots.capacity()) *
                    sizeof(std::uint32_t);
     }
-    /// Behind the last box of a child.
+    /// Index in `ids` after the last box of a child.
     [[nodiscard]] std::uint32_t end_of(std::uint32_t node, std::uint32_t child) const {
         return child + 1 < width ? nodes[node].first[child + 1] : ends[node];
     }
 };
 
-/// What a child costs a random line: 0 when nothing is there.
+/// The box_cost() of a child; 0 for an empty box.
 constexpr double cost_of(const Aabb& box) { return is_empty(box) ? 0.0 : static_cast<double>(box_cost(box)); }
 
 }  // namespace fase::broad::wide

@@ -1,4 +1,4 @@
-/// What only reads the wide tree: queries, all pairs, checks, drawing.
+/// Read-only functions of the wide tree: queries, all pairs, checks, drawing.
 #include <algorithm>
 #include <limits>
 
@@ -8,40 +8,40 @@
 namespace fase::broad {
 
 using wide::leaf_bit;
-using wide::none;
 using wide::width;
 
 namespace {
 
-/// What a box meets in a tree, where all is finite, with finite bounds, which unused children do not meet.
-bool traverse_trees(const wide::Forest& forest, const Aabb& box, wide::Found visit) {
+/// Visits the boxes in the trees that overlap `box`. Clamps it to finite bounds, which unused children do not overlap.
+bool traverse_trees(const wide::Forest& forest, const Aabb& box, wide::VisitOverlap visit) {
     for (int axis = 0; axis < 3; ++axis)
         if (std::isnan(box.lo[axis]) || std::isnan(box.hi[axis])) return true;
-    constexpr float most = std::numeric_limits<float>::max();
-    return wide::traverse(forest, {max(box.lo, {-most, -most, -most}), min(box.hi, {most, most, most})}, visit);
+    constexpr float largest = std::numeric_limits<float>::max();
+    return wide::traverse(
+        forest, {max(box.lo, {-largest, -largest, -largest}), min(box.hi, {largest, largest, largest})}, visit);
 }
 
 }  // namespace
 
-void WideBvh::traverse(const BoxRegion& region, wide::Found visit) const {
+void WideBvh::traverse(const BoxRegion& region, wide::VisitOverlap visit) const {
     if (traverse_lists(region, visit)) traverse_trees(forest_, region.box, visit);
 }
 
-void WideBvh::nearest_first(const RayMeasure& measure, float limit, wide::Near visit) const {
-    limit = nearest_of_lists(measure, limit, visit);
+void WideBvh::nearest_first(const RayMeasure& measure, float limit, wide::VisitNear visit) const {
+    limit = nearest_in_lists(measure, limit, visit);
     if (limit < 0) return;
-    wide::is_plain(measure) ? wide::nearest_first(forest_, measure, limit, visit)
-                            : nearest_below(measure, limit, visit);
+    wide::fits_float(measure) ? wide::nearest_first(forest_, measure, limit, visit)
+                              : nearest_below(measure, limit, visit);
 }
 
-void WideBvh::nearest_first(const PointMeasure& measure, float limit, wide::Near visit) const {
-    limit = nearest_of_lists(measure, limit, visit);
+void WideBvh::nearest_first(const PointMeasure& measure, float limit, wide::VisitNear visit) const {
+    limit = nearest_in_lists(measure, limit, visit);
     if (limit < 0) return;
-    wide::is_plain(measure) ? wide::nearest_first(forest_, measure, limit, visit)
-                            : nearest_below(measure, limit, visit);
+    wide::fits_float(measure) ? wide::nearest_first(forest_, measure, limit, visit)
+                              : nearest_below(measure, limit, visit);
 }
 
-void WideBvh::cull(const FrustumRegion& region, wide::Take take) const {
+void WideBvh::cull(const FrustumRegion& region, wide::TakeRange take) const {
     traverse_lists(region, [&](Proxy p, const Aabb& box) {
         take(std::span<const Proxy>(&p, 1), region.contains(box));
         return true;
@@ -49,10 +49,10 @@ void WideBvh::cull(const FrustumRegion& region, wide::Take take) const {
     wide::cull(forest_, region, take);
 }
 
-/// The pairs that have a box in a list.
+/// Finds the pairs with a box in a list.
 void WideBvh::find_listed_pairs(bool awake_only, PairSink& sink) const {
     const auto add = [&](Proxy p, Proxy q) {
-        if (!awake_only || spots_[p].awake || spots_[q].awake) sink.add(p, q);
+        if (!awake_only || locations_[p].awake || locations_[q].awake) sink.add(p, q);
     };
     for (int kind = 0; kind < 2; ++kind) {
         for (std::size_t i = 0; i < lists_[kind].size(); ++i) {
@@ -71,10 +71,10 @@ void WideBvh::find_listed_pairs(bool awake_only, PairSink& sink) const {
 
 namespace {
 
-/// Calls `start(meeting)` for each root with itself and with each later one.
-template <class Start> void each_start(const wide::Forest& forest, Start&& start) {
+/// Calls `start(pair)` for each root with itself and with each later root.
+template <class Start> void for_each_root_pair(const wide::Forest& forest, Start&& start) {
     for (std::size_t i = 0; i < forest.roots.size(); ++i)
-        for (std::size_t k = i; k < forest.roots.size(); ++k) start(wide::Meeting{forest.roots[i], forest.roots[k]});
+        for (std::size_t k = i; k < forest.roots.size(); ++k) start(wide::NodePair{forest.roots[i], forest.roots[k]});
 }
 
 }  // namespace
@@ -82,25 +82,25 @@ template <class Start> void each_start(const wide::Forest& forest, Start&& start
 void WideBvh::find_pairs(std::vector<Pair>& out) const {
     PairSink sink(out);
     find_listed_pairs(false, sink);
-    each_start(forest_, [&](wide::Meeting start) { wide::find_pairs(forest_, forest_, start, false, sink); });
+    for_each_root_pair(forest_, [&](wide::NodePair start) { wide::find_pairs(forest_, forest_, start, false, sink); });
 }
 
 void WideBvh::find_awake_pairs(std::vector<Pair>& out) const {
     if (resting_ == 0) return find_pairs(out);
     PairSink sink(out);
     find_listed_pairs(true, sink);
-    each_start(forest_, [&](wide::Meeting start) { wide::find_pairs(forest_, forest_, start, true, sink); });
+    for_each_root_pair(forest_, [&](wide::NodePair start) { wide::find_pairs(forest_, forest_, start, true, sink); });
 }
 
 void WideBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    constexpr std::size_t wanted_parts = 512;
+    constexpr std::size_t min_parts = 512;
     PairSink sink(out);
     find_listed_pairs(false, sink);
-    std::vector<wide::Meeting> parts, next;  // always the whole descent, in finer and finer parts
-    each_start(forest_, [&](wide::Meeting start) { parts.push_back(start); });
-    while (!parts.empty() && parts.size() < wanted_parts) {
+    std::vector<wide::NodePair> parts, next;  // together always the complete descent, in finer and finer parts
+    for_each_root_pair(forest_, [&](wide::NodePair start) { parts.push_back(start); });
+    while (!parts.empty() && parts.size() < min_parts) {
         next.clear();
-        for (const wide::Meeting& part : parts) wide::open_meeting(forest_, forest_, part, sink, next);
+        for (const wide::NodePair& part : parts) wide::expand_pair(forest_, forest_, part, sink, next);
         parts.swap(next);
     }
     sink.flush();
@@ -136,11 +136,11 @@ void WideBvh::find_pairs_with(const WideBvh& other, std::vector<Pair>& out) cons
 }
 
 std::size_t WideBvh::bytes() const {
-    return sizeof(*this) + forest_.bytes() + spots_.capacity() * sizeof(Spot) +
+    return sizeof(*this) + forest_.bytes() + locations_.capacity() * sizeof(Location) +
            (lists_[0].capacity() + lists_[1].capacity()) * sizeof(Move) + dirty_.capacity() * sizeof(std::uint32_t) +
            is_dirty_.capacity() + items_.capacity() * sizeof(BuildItem) +
            scratch_.sorted.capacity() * sizeof(BuildItem) +
-           (scratch_.keys.capacity() + scratch_.spare_keys.capacity()) * sizeof(MortonKey);
+           (scratch_.keys.capacity() + scratch_.scratch_keys.capacity()) * sizeof(MortonKey);
 }
 
 void WideBvh::cells(std::vector<DrawnCell>& out) const {
@@ -153,7 +153,7 @@ void WideBvh::cells(std::vector<DrawnCell>& out) const {
     while (!open.empty()) {
         const Level at = open.pop();
         const wide::Node& node = forest_.nodes[at.node];
-        if (const Aabb box = node.united(); !is_empty(box)) out.push_back({box, at.depth});
+        if (const Aabb box = node.merged(); !is_empty(box)) out.push_back({box, at.depth});
         for (std::uint32_t i = width; i-- > 0;)
             if (!node.is_leaf(i)) open.push({node.link[i], at.depth + 1});
     }
@@ -163,19 +163,19 @@ std::string WideBvh::broken_invariant() const {
     for (int kind = 0; kind < 2; ++kind) {
         for (std::size_t i = 0; i < lists_[kind].size(); ++i) {
             const Move& m = lists_[kind][i];
-            if (m.proxy >= spots_.size() || spots_[m.proxy].where != static_cast<Where>(kind) ||
-                spots_[m.proxy].at != i)
+            if (m.proxy >= locations_.size() || locations_[m.proxy].where != static_cast<Where>(kind) ||
+                locations_[m.proxy].at != i)
                 return "a listed box is not where its proxy points";
-            if (is_regular(m.box) != (kind == 0)) return "a box stands in the wrong list";
+            if (is_regular(m.box) != (kind == 0)) return "a box is in the wrong list";
         }
     }
     std::size_t stored = 0, resting = 0;
-    for (const Spot& spot : spots_) {
-        stored += spot.where != Where::Nowhere ? 1 : 0;
-        resting += spot.where != Where::Nowhere && !spot.awake ? 1 : 0;
+    for (const Location& location : locations_) {
+        stored += location.where != Where::None ? 1 : 0;
+        resting += location.where != Where::None && !location.awake ? 1 : 0;
     }
-    if (stored != size()) return "a proxy points at a box that is gone";
-    if (resting != resting_) return "the resting boxes are miscounted";
+    if (stored != size()) return "a proxy points to a missing box";
+    if (resting != resting_) return "the number of sleeping boxes is wrong";
     return broken_tree();
 }
 
@@ -183,15 +183,15 @@ std::string WideBvh::broken_tree() const {
     const std::size_t count = forest_.nodes.size();
     if (forest_.parents.size() != count || forest_.ends.size() != count || forest_.awake.size() != count ||
         is_dirty_.size() != count)
-        return "not every node has all that belongs to it";
-    if (forest_.ids.size() != in_trees_ + forest_.holes.size()) return "the ids do not count up";
-    std::vector<std::uint32_t> holes = forest_.holes;
-    std::sort(holes.begin(), holes.end());
-    if (std::adjacent_find(holes.begin(), holes.end()) != holes.end()) return "a hole is counted twice";
-    if (dirty_.empty() && holes != forest_.holes) return "the holes are not in order";
+        return "the arrays of nodes differ in length";
+    if (forest_.ids.size() != in_trees_ + forest_.free_slots.size()) return "the number of ids is wrong";
+    std::vector<std::uint32_t> free_slots = forest_.free_slots;
+    std::sort(free_slots.begin(), free_slots.end());
+    if (std::adjacent_find(free_slots.begin(), free_slots.end()) != free_slots.end()) return "a slot is counted twice";
+    if (dirty_.empty() && free_slots != forest_.free_slots) return "the free slots are not in order";
     LocalStack<std::uint32_t, 256> open;
     for (std::size_t i = forest_.roots.size(); i-- > 0;) {
-        if (forest_.parents[forest_.roots[i]] != none) return "a root has a parent";
+        if (forest_.parents[forest_.roots[i]] != no_index) return "a root has a parent";
         open.push(forest_.roots[i]);
     }
     std::uint32_t next = 0, boxes = 0;
@@ -201,13 +201,13 @@ std::string WideBvh::broken_tree() const {
         if (std::string broken = broken_node(index); !broken.empty()) return broken;
         for (std::uint32_t i = width; i-- > 0;) {
             if (!forest_.nodes[index].is_leaf(i)) open.push(forest_.nodes[index].link[i]);
-            boxes += forest_.nodes[index].is_leaf(i) && forest_.nodes[index].link[i] != none ? 1 : 0;
+            boxes += forest_.nodes[index].is_leaf(i) && forest_.nodes[index].link[i] != no_index ? 1 : 0;
         }
     }
     if (next != count) return "a node is lost";
     if (boxes != in_trees_) return "a box is lost";
     const double cost = cost_from(0);
-    if (dirty_.empty() && !(std::abs(cost - cost_) <= 1e-6 * cost + 1e-300)) return "the cost is not kept up";
+    if (dirty_.empty() && !(std::abs(cost - cost_) <= 1e-6 * cost + 1e-300)) return "the cost is out of date";
     return {};
 }
 
@@ -216,30 +216,31 @@ std::string WideBvh::broken_node(std::uint32_t index) const {
     std::uint32_t begin = node.first[0];
     for (std::uint32_t i = 0; i < width; ++i) {
         if (node.first[i] != begin || forest_.end_of(index, i) < begin)
-            return "the boxes of the children are not in a row";
+            return "the box ranges of the children have gaps";
         begin = forest_.end_of(index, i);
         const bool awake = (forest_.awake[index] >> i & 1) != 0;
-        if (node.link[i] == none) {
+        if (node.link[i] == no_index) {
             if (!(node.box(i) == Aabb{}) || awake) return "an unused child is not empty";
         } else if (node.is_leaf(i)) {
             const Proxy p = node.link[i] & ~leaf_bit;
-            if (p >= spots_.size() || spots_[p].where != Where::Tree || spots_[p].at != wide::place_of(index, i))
+            if (p >= locations_.size() || locations_[p].where != Where::Tree ||
+                locations_[p].at != wide::place_of(index, i))
                 return "a box is not where its proxy points";
             if (forest_.ids[node.first[i]] != p) return "the ids are not in the order of the tree";
-            if (!is_regular(node.box(i))) return "a box is in the tree that should not be";
-            if (awake != spots_[p].awake) return "a node does not know whether a box is awake";
+            if (!is_regular(node.box(i))) return "an unbounded box is in a tree";
+            if (awake != locations_[p].awake) return "the awake bit of a box is wrong";
         } else {
             const std::uint32_t child = node.link[i];
-            if (child <= index || child >= forest_.nodes.size()) return "a child lies outside the pool";
-            if (forest_.parents[child] != wide::place_of(index, i)) return "a child does not know its parent";
+            if (child <= index || child >= forest_.nodes.size()) return "a child is at an invalid index";
+            if (forest_.parents[child] != wide::place_of(index, i)) return "a child has a wrong parent";
             if (forest_.nodes[child].first[0] != node.first[i] || forest_.ends[child] != begin)
-                return "a child has other boxes than its parent says";
-            if (awake != (forest_.awake[child] != 0)) return "a node does not know whether anything below is awake";
-            if (dirty_.empty() && !(forest_.nodes[child].united() == node.box(i)))
+                return "the box ranges of a child and its parent differ";
+            if (awake != (forest_.awake[child] != 0)) return "the awake bit of a child is wrong";
+            if (dirty_.empty() && !(forest_.nodes[child].merged() == node.box(i)))
                 return "an inner node is not the union of its children";
         }
     }
-    if (begin != forest_.ends[index]) return "the boxes of a node end elsewhere";
+    if (begin != forest_.ends[index]) return "the end of the box range of a node is wrong";
     return {};
 }
 

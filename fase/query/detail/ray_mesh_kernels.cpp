@@ -1,4 +1,4 @@
-/// Compiles the search through triangles for every SIMD target and picks one at run time.
+/// Compiles the ray-mesh search for every SIMD target and selects one at run time.
 // Vectors of unknown size cannot be members; such targets fall back to 128 bits.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE

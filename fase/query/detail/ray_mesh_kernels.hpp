@@ -1,20 +1,21 @@
 #pragma once
-/// The search of a ray through blocks of triangles, compiled once for each instruction set.
+/// Ray casts against blocks of triangles, compiled once for each instruction set.
 #include "fase/query/ray_mesh.hpp"
 
 namespace fase::query {
 
-/// What the search reads of a mesh.
+/// The parts of a mesh that the search reads.
 struct RayMeshView {
     const broad::WideBvh& tree;
     const TriangleBlock* blocks;
-    float room;  ///< that the boxes of triangles are grown by
+    float margin;  ///< of the triangle boxes, metres
 };
 
-/// A triangle's box with room for the roundings of its test.
-[[nodiscard]] Aabb roomy_box(const TriangleBlock& block, std::uint32_t lane, float room);
+/// Returns the box of a triangle, enlarged by `margin`.
+[[nodiscard]] Aabb triangle_box(const TriangleBlock& block, std::uint32_t lane, float margin);
 
-/// The least hit within the ray's length, or with `any` one of them.
+/// Returns the smallest hit within the ray's length, or with `any` the first one found; a default Hit when there is
+/// none.
 [[nodiscard]] Hit cast_at_blocks(const RayMeshView& mesh, const Ray& ray, bool any);
 
 }  // namespace fase::query

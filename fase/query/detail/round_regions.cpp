@@ -1,10 +1,10 @@
-/// Balls and capsules against boxes, in double.
+/// Sphere and capsule regions against boxes, in double.
 #include "fase/query/detail/round_regions.hpp"
 
 namespace fase::query {
 namespace {
 
-/// With room for the roundings of the tests that stand behind it.
+/// Returns the bounds of a capsule, enlarged by the rounding errors of the exact tests.
 Aabb box_around(Vec3d lo, Vec3d hi, double radius) {
     const auto size = [](Vec3d v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
     const double reach = radius + 1e-12 * (size(lo) + size(hi) + radius);
@@ -12,8 +12,8 @@ Aabb box_around(Vec3d lo, Vec3d hi, double radius) {
     return rounded_outward(lo - out, hi + out);
 }
 
-/// From where to where a box reaches along a direction; axes that the direction does not see give 0, not 0 · infinity.
-/// `rounding` is no less than the error of either.
+/// The interval of a box along a direction. Axes with direction 0 give 0, not 0 · infinity. `rounding` is an upper
+/// bound of the error of both ends.
 struct Reach {
     double lo = 0, hi = 0, rounding = 0;
 };
@@ -53,27 +53,27 @@ bool CapsuleRegion::touches(const Aabb& box) const {
     if (!overlaps(bounds_, box) || is_empty(box)) return false;
     for (const Slab& slab : across_) {
         const Reach reach = reach_along(slab.normal, box);
-        // NaN (endless both ways) counts as met.
+        // NaN (unbounded on both sides) counts as touching.
         if (reach.lo - reach.rounding > slab.hi || reach.hi + reach.rounding < slab.lo) return false;
     }
     return true;
 }
 
-bool CapsuleRegion::meets(const Aabb& box) const {
+bool CapsuleRegion::touches_exactly(const Aabb& box) const {
     return !is_empty(box) && squared_distance(a_, b_, box) <= radius_ * radius_;
 }
 
 double squared_distance(Vec3d a, Vec3d b, const Aabb& box) {
     const Vec3d along = b - a;
-    /// Signed, from the box to the point: 0 inside.
+    // Signed distance from the box to the point on one axis: 0 inside.
     const auto gap = [](double lo, double hi, double p) { return p < lo ? p - lo : p > hi ? p - hi : 0.0; };
     const auto gaps_at = [&](double t) {
         const Vec3d p = t == 1 ? b : a + along * t;
         return Vec3d{gap(box.lo.x, box.hi.x, p.x), gap(box.lo.y, box.hi.y, p.y), gap(box.lo.z, box.hi.z, p.z)};
     };
     const auto slope_at = [&](double t) { return dot(gaps_at(t), along); };
-    // The square of the distance is convex along the segment, and its slope is linear between the places where the
-    // segment passes the plane of a face: these narrow the minimum down to one linear piece.
+    // The squared distance is convex along the segment, and its slope is linear between the crossings with the face
+    // planes of the box. Bisect over these crossings to the linear piece that contains the minimum.
     double lo = 0, hi = 1, slope_lo = slope_at(0), slope_hi = slope_at(1);
     if (!(slope_lo < 0)) return length_squared(gaps_at(0));
     if (!(slope_hi > 0)) return length_squared(gaps_at(1));

@@ -1,12 +1,12 @@
 #pragma once
-/// Regions that are no boxes: a point, a sphere, a capsule.
+/// Query regions: point, sphere, capsule.
 #include <cmath>
 
 #include "fase/broad/region.hpp"
 
 namespace fase::query {
 
-/// The boxes that a point is in; their faces count. Exact in double.
+/// Touches the boxes that contain a point, faces included. Exact in double.
 class PointRegion {
 public:
     explicit PointRegion(Vec3d point) : point_(point), bounds_(rounded_outward(point, point)) {}
@@ -21,7 +21,7 @@ private:
     Aabb bounds_;
 };
 
-/// The boxes that a ball touches. Empty boxes touch nothing.
+/// Touches the boxes that overlap a sphere. Empty boxes touch nothing.
 class SphereRegion {
 public:
     /// `radius` in metres, 0 or more; both finite.
@@ -53,19 +53,19 @@ private:
     }
 };
 
-/// The boxes that a capsule touches: all within `radius` of the segment from `a` to `b`. touches() judges by six
-/// directions that do not depend on the box, which makes it monotone, and lets pass boxes whose corner is a little too
-/// far away; meets() is exact. overlapping() applies both. Empty boxes touch nothing.
+/// Touches the boxes that overlap a capsule: all points within `radius` of the segment from `a` to `b`. touches() uses
+/// six separating directions that do not depend on the box. So it is monotone, but conservative near corners of the
+/// box; touches_exactly() is exact. overlapping() applies both. Empty boxes touch nothing.
 class CapsuleRegion {
 public:
     /// `radius` in metres, 0 or more; all finite. a == b is a sphere.
     CapsuleRegion(Vec3d a, Vec3d b, float radius);
     [[nodiscard]] bool touches(const Aabb& box) const;
-    [[nodiscard]] bool meets(const Aabb& box) const;
+    [[nodiscard]] bool touches_exactly(const Aabb& box) const;
     [[nodiscard]] Aabb bounds() const { return bounds_; }
 
 private:
-    /// Everything of the capsule lies between `lo` and `hi` along `normal`.
+    /// The interval of the capsule along `normal`, with a margin for rounding.
     struct Slab {
         Vec3d normal;
         double lo = 0, hi = 0;
@@ -73,11 +73,11 @@ private:
     Vec3d a_, b_;
     double radius_;
     Aabb bounds_;
-    Slab across_[3];  // at right angles to the segment and to one axis; normal 0 when there is none
+    Slab across_[3];  // normal is perpendicular to the segment and to one axis; 0 when the segment is parallel to it
 };
 
-/// The square of the distance between the segment from `a` to `b` and a box that is not empty, square metres; 0 when
-/// they touch.
+/// Returns the squared distance between the segment from `a` to `b` and a box that is not empty, in m²; 0 when they
+/// touch.
 [[nodiscard]] double squared_distance(Vec3d a, Vec3d b, const Aabb& box);
 
 }  // namespace fase::query

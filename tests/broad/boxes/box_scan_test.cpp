@@ -12,7 +12,7 @@
 namespace fase::broad {
 namespace {
 
-/// Boxes of whole numbers, so that many just touch; every ninth is infinite, inverted or NaN unless `ordinary`.
+/// Boxes with integer coordinates, so that many touch; three of nine are infinite, inverted or NaN unless `regular`.
 BoxColumns boxes_of(std::size_t count, std::uint64_t seed, bool regular) {
     Random random(seed);
     BoxColumns boxes;
@@ -43,7 +43,7 @@ BoxColumns sorted_along(const BoxColumns& boxes, int axis) {
     return sorted;
 }
 
-/// Runs a check with each instruction set that this machine and this compiler offer.
+/// Runs a check with each instruction set that the machine and the compiler support.
 void on_every_target(const std::function<void()>& check) {
     int targets = 0;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -63,7 +63,7 @@ std::vector<Pair> sorted(std::vector<Pair> pairs) {
     return pairs;
 }
 
-/// The definition: overlaps() on each box from begin to end-1 and each behind it.
+/// The definition: overlaps() of each box in begin..end-1 and each later box.
 std::vector<Pair> pairs_by_definition(const BoxColumns& boxes, std::size_t begin, std::size_t end) {
     std::vector<Pair> pairs;
     for (std::size_t i = begin; i < end; ++i)
@@ -72,7 +72,7 @@ std::vector<Pair> pairs_by_definition(const BoxColumns& boxes, std::size_t begin
     return pairs;
 }
 
-/// Calls `find` with every target: all find the same pairs in the same order, and these are the expected ones.
+/// Calls `find` on every target: it must find the expected pairs, in the same order on all targets.
 void expect_pairs(const std::vector<Pair>& expected, const std::function<void(std::vector<Pair>&)>& find) {
     std::vector<Pair> first;
     bool is_first = true;
@@ -88,7 +88,7 @@ void expect_pairs(const std::vector<Pair>& expected, const std::function<void(st
 
 constexpr std::size_t lengths[] = {0, 1, 2, 3, 4, 5, 15, 16, 17, 31, 33, 64, 100, 257};
 
-TEST(BoxScan, FindsWhatTheDefinitionSaysBehindEachBox) {
+TEST(BoxScan, FindsThePairsOfEachBoxWithLaterBoxes) {
     for (const std::size_t count : lengths) {
         SCOPED_TRACE(count);
         const BoxColumns boxes = boxes_of(count, count, false);
@@ -100,7 +100,7 @@ TEST(BoxScan, FindsWhatTheDefinitionSaysBehindEachBox) {
     }
 }
 
-TEST(BoxScan, FindsWhatTheDefinitionSaysInASortedRow) {
+TEST(BoxScan, FindsThePairsInASortedList) {
     for (const std::size_t count : lengths) {
         for (int axis = 0; axis < 3; ++axis) {
             SCOPED_TRACE(std::to_string(count) + " along " + std::to_string(axis));
@@ -112,8 +112,8 @@ TEST(BoxScan, FindsWhatTheDefinitionSaysInASortedRow) {
     }
 }
 
-/// More pairs a box than a block holds, and far more than a chunk of others.
-TEST(BoxScan, FindsAllPairsOfThousandsInOnePlace) {
+/// More pairs per box than a block holds, and more boxes than a chunk.
+TEST(BoxScan, FindsAllPairsOfThousandsOfCoincidentBoxes) {
     BoxColumns boxes;
     boxes.resize(2600);
     for (std::size_t i = 0; i < boxes.size(); ++i) boxes.put(i, static_cast<Proxy>(i), {{1, 2, 3}, {2, 3, 4}});
@@ -123,7 +123,7 @@ TEST(BoxScan, FindsAllPairsOfThousandsInOnePlace) {
     expect_pairs(expected, [&](std::vector<Pair>& out) { sweep_behind(boxes.view(), begin, end, out); });
 }
 
-TEST(BoxScan, FindsEachPairOfTwoRowsOnceFromBothSides) {
+TEST(BoxScan, FindsEachPairOfTwoSortedListsOnce) {
     for (const std::size_t count : lengths) {
         SCOPED_TRACE(count);
         const BoxColumns a = sorted_along(boxes_of(count, 1, true), 1);
@@ -160,8 +160,8 @@ TEST(BoxScan, FindsTheBoxesThatTouchABoxInOrder) {
     const BoxColumns boxes = boxes_of(200, 7, false);
     Random random(8);
     for (int i = 0; i < 100; ++i) {
-        const BoxColumns asked = boxes_of(5, random.next(), false);
-        const Aabb region = asked.box(random.below(5));
+        const BoxColumns candidates = boxes_of(5, random.next(), false);
+        const Aabb region = candidates.box(random.below(5));
         const std::size_t begin = random.below(200), end = begin + random.below(201 - begin);
         std::vector<std::uint32_t> expected;
         for (std::size_t k = begin; k < end; ++k)

@@ -7,7 +7,7 @@
 namespace fase::broad {
 namespace {
 
-TEST(LocalStack, GivesBackInReverseAlsoPastItsLocalRoom) {
+TEST(LocalStack, PopsInReverseOrderBeyondItsLocalCapacity) {
     LocalStack<int, 4> stack;
     std::vector<int> model;
     int next = 0;
@@ -16,7 +16,7 @@ TEST(LocalStack, GivesBackInReverseAlsoPastItsLocalRoom) {
             stack.push(next);
             model.push_back(next++);
         }
-        stack.make_room(1);
+        stack.reserve_more(1);
         stack.push_if(round % 2 == 0, next);
         if (round % 2 == 0) model.push_back(next++);
         for (int i = 0; i < round % 4 && !model.empty(); ++i) {

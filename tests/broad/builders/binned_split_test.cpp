@@ -16,7 +16,7 @@ Aabb bounds_of(std::span<const BuildItem> items) {
     return bounds;
 }
 
-RC_GTEST_PROP(SplitByBinnedArea, KeepsAllItemsAndTellsTheBoundsOfBothSides, ()) {
+RC_GTEST_PROP(SplitByBinnedArea, KeepsAllItemsAndReturnsTheBoundsOfBothSides, ()) {
     const std::vector<conformance::Scene> scenes = conformance::all_scenes();
     const auto& scene = scenes[*rc::gen::inRange<std::size_t>(0, scenes.size())];
     Random random(*rc::gen::arbitrary<std::uint64_t>());
@@ -38,7 +38,7 @@ RC_GTEST_PROP(SplitByBinnedArea, KeepsAllItemsAndTellsTheBoundsOfBothSides, ()) 
     RC_ASSERT(std::count(seen.begin(), seen.end(), true) == static_cast<std::ptrdiff_t>(items.size()));
 }
 
-TEST(SplitByBinnedArea, CutsBetweenTwoClusters) {
+TEST(SplitByBinnedArea, SplitsBetweenTwoClusters) {
     std::vector<BuildItem> items;
     for (Proxy p = 0; p < 30; ++p) {
         const float x = (p % 3 == 0 ? 100.0f : 0.0f) + static_cast<float>(p) * 0.1f;

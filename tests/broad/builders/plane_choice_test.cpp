@@ -11,7 +11,7 @@
 namespace fase::broad {
 namespace {
 
-TEST(PlaneScore, IsZeroForAnEvenCutAndGrowsWithEachFault) {
+TEST(PlaneScore, IsZeroForABalancedPlaneAndGrowsWithImbalanceAndSplits) {
     const PlaneWeights weights{.balance = 1, .split = 4};
     EXPECT_EQ(plane_score({5, 0, 5}, weights), 0);
     EXPECT_EQ(plane_score({7, 0, 3}, weights), 4);
@@ -19,7 +19,7 @@ TEST(PlaneScore, IsZeroForAnEvenCutAndGrowsWithEachFault) {
     EXPECT_EQ(plane_score({4, 2, 4}, weights), 8);
 }
 
-TEST(ChoosePlane, TakesTheFirstOfTheBestAndNoneThatSeparatesNothing) {
+TEST(ChoosePlane, ReturnsTheFirstOfTheBestThatSeparates) {
     const std::vector<Aabb> boxes{
         {{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}};
     const std::array<BoxPlane, 4> planes{BoxPlane{1, 0}, {0, 1}, {0, 2}, {0, 2}};
@@ -33,15 +33,15 @@ TEST(ChoosePlane, TakesTheFirstOfTheBestAndNoneThatSeparatesNothing) {
     EXPECT_FALSE(choose_plane(0, [&](std::size_t i) { return planes[i]; }, 4, side_at, {}));
 }
 
-/// What a compiler of two-dimensional levels needs: lines through segments, at any angle.
-TEST(ChoosePlane, CutsSegmentsOfAMapByLines) {
+/// As in a compiler of two-dimensional levels: lines through segments, at any angle.
+TEST(ChoosePlane, SplitsSegmentsOfAMapByLines) {
     struct Point {
         float x, y;
     };
     struct Segment {
         Point a, b;
     };
-    // A square room; a slanted wall through its middle, in two pieces; a pillar's edge on each side.
+    // A square room; a diagonal wall through its centre, in two pieces; one edge of a pillar on each side.
     const std::vector<Segment> map{{{0, 0}, {8, 0}}, {{8, 0}, {8, 8}}, {{8, 8}, {0, 8}}, {{0, 8}, {0, 0}},
                                    {{0, 0}, {4, 4}}, {{4, 4}, {8, 8}}, {{2, 6}, {3, 7}}, {{6, 2}, {7, 3}}};
     const auto distance = [](const Segment& line, Point p) {
@@ -49,8 +49,8 @@ TEST(ChoosePlane, CutsSegmentsOfAMapByLines) {
     };
     const auto side_at = [&](const Segment& line, std::size_t k) {
         const float a = distance(line, map[k].a), b = distance(line, map[k].b);
-        if (a >= 0 && b >= 0) return Side::Above;  // in the line: its front
-        return a <= 0 && b <= 0 ? Side::Below : Side::Astride;
+        if (a >= 0 && b >= 0) return Side::Above;  // on the line: in front
+        return a <= 0 && b <= 0 ? Side::Below : Side::Straddling;
     };
     const auto best = choose_plane(map.size(), [&](std::size_t i) { return map[i]; }, map.size(), side_at,
                                    {.balance = 1, .split = 8});
@@ -58,12 +58,12 @@ TEST(ChoosePlane, CutsSegmentsOfAMapByLines) {
     EXPECT_EQ(best->plane.a.x, 0);  // the diagonal: three on each side, two in it
     EXPECT_EQ(best->plane.b.x, 4);
     EXPECT_EQ(best->cut, (PlaneCut{3, 0, 5}));
-    // A room without anything in it is convex: no line of its own cuts it.
+    // An empty room is convex: none of its lines separates it.
     EXPECT_FALSE(choose_plane(4, [&](std::size_t i) { return map[i]; }, 4, side_at, {}));
 }
 
-/// What a compiler of three-dimensional levels needs: planes through polygons.
-TEST(ChoosePlane, CutsPolygonsByPlanes) {
+/// As in a compiler of three-dimensional levels: planes through polygons.
+TEST(ChoosePlane, SplitsPolygonsByPlanes) {
     using Triangle = std::array<Vec3, 3>;
     const auto slanted = [](float x) { return Triangle{Vec3{x, 0, 0}, Vec3{x + 1, 1, 0}, Vec3{x, 0, 1}}; };
     const std::vector<Triangle> triangles{slanted(0), slanted(3), slanted(6), slanted(9), slanted(12)};
@@ -73,16 +73,16 @@ TEST(ChoosePlane, CutsPolygonsByPlanes) {
         return Plane{normal, dot(normal, t[0])};
     };
     const auto side_at = [&](const Plane& plane, std::size_t k) {
-        bool before = false, behind = false;
+        bool front = false, back = false;
         for (const Vec3 corner : triangles[k]) {
-            before |= signed_distance(plane, corner) > 1e-4f;
-            behind |= signed_distance(plane, corner) < -1e-4f;
+            front |= signed_distance(plane, corner) > 1e-4f;
+            back |= signed_distance(plane, corner) < -1e-4f;
         }
-        return before && behind ? Side::Astride : behind ? Side::Below : Side::Above;
+        return front && back ? Side::Straddling : back ? Side::Below : Side::Above;
     };
     const auto best = choose_plane(triangles.size(), plane_at, triangles.size(), side_at, {});
     ASSERT_TRUE(best);
-    EXPECT_EQ(best->cut.astride, 0u);
+    EXPECT_EQ(best->cut.straddling, 0u);
     EXPECT_EQ(best->cut.largest(), 3u);
 }
 
@@ -96,7 +96,7 @@ TEST(HalvingPlane, LeavesAtMostSevenEighthsTogether) {
     const auto plane = halving_plane(nested, scratch);
     ASSERT_TRUE(plane);
     EXPECT_LE(cut_of(*plane, nested).largest(), 875u);
-    // Four in five have the same faces.
+    // Four of five boxes have the same faces.
     for (Move& m : nested)
         if (m.proxy % 5 != 0) m.box = {{0, 0, 0}, {1, 1, 1}};
     const auto past_them = halving_plane(nested, scratch);

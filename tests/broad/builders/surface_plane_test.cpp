@@ -11,7 +11,7 @@ Aabb bounds_of(const std::vector<Move>& boxes) {
     return bounds;
 }
 
-TEST(SurfacePlane, LiesAtAFaceBesideTheGap) {
+TEST(SurfacePlane, IsAtAFaceNextToTheGap) {
     std::vector<Aabb> boxes;
     for (int i = 0; i < 10; ++i) boxes.push_back(cube({static_cast<float>(i % 3), static_cast<float>(i), 0}));
     for (int i = 0; i < 10; ++i) boxes.push_back(cube({40 + static_cast<float>(i % 3), static_cast<float>(i), 0}));
@@ -22,14 +22,14 @@ TEST(SurfacePlane, LiesAtAFaceBesideTheGap) {
     EXPECT_EQ(cut_of(best->plane, moves), (PlaneCut{10, 0, 10}));
 }
 
-TEST(SurfacePlane, IsNoneForBoxesInOnePlace) {
+TEST(SurfacePlane, IsNoneForCoincidentBoxes) {
     const std::vector<Move> same = numbered(std::vector<Aabb>(50, cube({1, 2, 3})));
     EXPECT_FALSE(plane_of_least_surface(same, bounds_of(same), 16));
     const std::vector<Move> points = numbered(std::vector<Aabb>(50, cube({1, 2, 3}, 0)));
     EXPECT_FALSE(plane_of_least_surface(points, bounds_of(points), 16));
 }
 
-TEST(SurfacePlane, CountsNoTouchingBoxAsSplit) {
+TEST(SurfacePlane, DoesNotCountTouchingBoxesAsSplit) {
     std::vector<Aabb> row;
     for (int i = 0; i < 16; ++i) row.push_back(cube({static_cast<float>(i), 0, 0}));
     const std::vector<Move> moves = numbered(row);
@@ -38,7 +38,7 @@ TEST(SurfacePlane, CountsNoTouchingBoxAsSplit) {
     EXPECT_EQ(cut_of(best->plane, moves), (PlaneCut{8, 0, 8}));
 }
 
-TEST(SurfacePlane, SeparatesWheneverThereIsOne) {
+TEST(SurfacePlane, AlwaysSeparatesTheBoxes) {
     Random random(12);
     int found = 0;
     for (int round = 0; round < 300; ++round) {

@@ -14,7 +14,7 @@
 namespace fase::broad {
 namespace {
 
-/// Blocks and the list of what they should hold.
+/// Blocks, and the list of boxes that they must hold.
 struct Held {
     RowBlocks blocks;
     std::vector<Move> boxes;
@@ -22,20 +22,20 @@ struct Held {
     Proxy next = 0;
 
     void add(std::size_t count, Random& random, float world, float large_share) {
-        std::vector<Move> born;
+        std::vector<Move> added;
         for (std::size_t i = 0; i < count; ++i) {
             const Vec3 lo = place(random, 0, world);
             const bool large = random.between(0, 1) < large_share;
-            born.push_back({next++, {lo, lo + place(random, 0.5f, large ? 40.0f : 1.5f)}});
+            added.push_back({next++, {lo, lo + place(random, 0.5f, large ? 40.0f : 1.5f)}});
         }
-        boxes.insert(boxes.end(), born.begin(), born.end());
-        blocks.commit(born, settings);
+        boxes.insert(boxes.end(), added.begin(), added.end());
+        blocks.commit(added, settings);
     }
-    template <class Goes> void erase_if(Goes&& goes) {
+    template <class Condition> void erase_if(Condition&& condition) {
         std::erase_if(boxes, [&](const Move& m) {
-            const bool gone = goes(m);
-            if (gone) blocks.erase(m.proxy);
-            return gone;
+            const bool erased = condition(m);
+            if (erased) blocks.erase(m.proxy);
+            return erased;
         });
     }
     [[nodiscard]] std::size_t sets_in_use() const {
@@ -43,7 +43,7 @@ struct Held {
         for (std::size_t k = 0; k < blocks.sets(); ++k) count += blocks.set(k).size() > 0 ? 1 : 0;
         return count;
     }
-    [[nodiscard]] bool right() const {
+    [[nodiscard]] bool is_correct() const {
         if (blocks.broken_invariant() != "" || blocks.size() != boxes.size()) return false;
         std::vector<Proxy> visited, all;
         blocks.traverse(Everything{}, [&](Proxy p, const Aabb& box) {
@@ -59,16 +59,16 @@ struct Held {
         std::vector<Pair> pairs;
         {
             row_grid::PairBlock block(pairs);
-            blocks.find_query_pairs({query_boxes, {}}, RowBlocks::none, block);
+            blocks.find_query_pairs({query_boxes, {}}, no_index, block);
         }
         std::sort(pairs.begin(), pairs.end());
         return pairs;
     }
-    [[nodiscard]] std::vector<Pair> judged(std::span<const Move> query_boxes) const {
-        BruteForce judge;
-        for (const Move& m : boxes) judge.insert(m.proxy, m.box);
+    [[nodiscard]] std::vector<Pair> expected_pairs(std::span<const Move> query_boxes) const {
+        BruteForce reference;
+        for (const Move& m : boxes) reference.insert(m.proxy, m.box);
         std::vector<Pair> pairs;
-        find_pairs_of(judge, query_boxes, pairs);
+        find_pairs_of(reference, query_boxes, pairs);
         std::sort(pairs.begin(), pairs.end());
         return pairs;
     }
@@ -83,83 +83,83 @@ std::vector<Move> queries_in(float world, Random& random) {
     return query_boxes;
 }
 
-TEST(RowBlocks, HoldBoxesThroughALifeOfComingsAndGoings) {
+TEST(RowBlocks, StayCorrectWhileManyBoxesAreAddedAndErased) {
     Random random(1);
     Held held;
     constexpr float world = 60;
     held.add(40000, random, world, 0.01f);
-    ASSERT_TRUE(held.right());
-    EXPECT_EQ(held.blocks.sets(), 2u) << "boxes that come at once are one block";
+    ASSERT_TRUE(held.is_correct());
+    EXPECT_EQ(held.blocks.sets(), 2u) << "boxes added in bulk form one block";
     for (int step = 0; step < 60; ++step) {
         const bool grows = step % 20 < 12;
         held.erase_if([&](const Move&) { return random.below(grows ? 100 : 12) == 0; });
         held.add(grows ? 2500 : 100, random, world, 0.01f);
-        ASSERT_TRUE(held.right()) << step << ": " << held.blocks.broken_invariant();
+        ASSERT_TRUE(held.is_correct()) << step << ": " << held.blocks.broken_invariant();
         if (step % 4 == 0) {
             const std::vector<Move> query_boxes = queries_in(world, random);
-            ASSERT_TRUE(held.pairs_of(query_boxes) == held.judged(query_boxes)) << step;
+            ASSERT_TRUE(held.pairs_of(query_boxes) == held.expected_pairs(query_boxes)) << step;
         }
     }
     EXPECT_GT(held.blocks.sets(), 8u);
     held.erase_if([](const Move&) { return true; });
     held.blocks.commit({}, {});
-    EXPECT_TRUE(held.right());
-    while (held.blocks.work_waits()) held.blocks.commit({}, {});
-    EXPECT_TRUE(held.right());
+    EXPECT_TRUE(held.is_correct());
+    while (held.blocks.has_pending_work()) held.blocks.commit({}, {});
+    EXPECT_TRUE(held.is_correct());
 }
 
-TEST(RowBlocks, DissolveALargeBlockThatIsWornAFewBoxesACommit) {
+TEST(RowBlocks, SplitALargeFragmentedBlockInStepsOverSeveralCommits) {
     Random random(2);
     Held held;
     held.add(100000, random, 60, 0.001f);
-    std::size_t commits = 0, dissolving = 0;
+    std::size_t commits = 0, splits = 0;
     while (commits < 40) {
         held.erase_if([&](const Move& m) { return m.proxy % 100 == commits; });
         const std::size_t before = held.sets_in_use();
         held.blocks.commit({}, held.settings);
         ++commits;
-        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
+        ASSERT_TRUE(held.is_correct()) << held.blocks.broken_invariant();
         ASSERT_LE(held.sets_in_use(), before + 4);
-        dissolving += held.sets_in_use() > before ? 1 : 0;
+        splits += held.sets_in_use() > before ? 1 : 0;
     }
-    EXPECT_GE(dissolving, 3u);
+    EXPECT_GE(splits, 3u);
     EXPECT_GE(held.sets_in_use(), 5u);
     for (std::size_t k = 0; k < held.blocks.sets(); ++k)
         EXPECT_LE(held.blocks.set(k).size(), RowBlocks::block_max * 9 / 8 + 1);
 }
 
-TEST(RowBlocks, LoseAnyShareOfTheirBoxesAtOnce) {
+TEST(RowBlocks, StayCorrectAfterBulkErasureOfAnyShare) {
     for (const Proxy kept_in : {2u, 3u, 10u, 1000u, 100000u}) {
         Random random(4);
         Held held;
         held.add(20000, random, 40, 0.01f);
         held.erase_if([&](const Move& m) { return m.proxy % kept_in != 1; });
         held.add(100, random, 40, 0.01f);
-        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
+        ASSERT_TRUE(held.is_correct()) << held.blocks.broken_invariant();
         const std::vector<Move> query_boxes = queries_in(40, random);
-        ASSERT_TRUE(held.pairs_of(query_boxes) == held.judged(query_boxes));
+        ASSERT_TRUE(held.pairs_of(query_boxes) == held.expected_pairs(query_boxes));
         held.erase_if([&](const Move& m) { return m.proxy >= 20000; });
         held.blocks.commit({}, held.settings);
-        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
+        ASSERT_TRUE(held.is_correct()) << held.blocks.broken_invariant();
     }
 }
 
-TEST(RowBlocks, KeepsWhatHasOneMiddleInOneBlock) {
+TEST(RowBlocks, KeepBoxesWithEqualCentresInOneBlock) {
     Held held;
-    std::vector<Move> born;
-    for (Proxy p = 0; p < 40000; ++p) born.push_back({p, {{1, 2, 3}, {2, 3, 4}}});
-    held.blocks.commit(born, held.settings);
-    held.boxes = born;
+    std::vector<Move> added;
+    for (Proxy p = 0; p < 40000; ++p) added.push_back({p, {{1, 2, 3}, {2, 3, 4}}});
+    held.blocks.commit(added, held.settings);
+    held.boxes = added;
     for (int step = 0; step < 4; ++step) {
         held.erase_if([](const Move& m) { return m.proxy % 7 == 0; });
         held.blocks.commit({}, held.settings);
-        ASSERT_TRUE(held.right()) << held.blocks.broken_invariant();
-        EXPECT_FALSE(held.blocks.work_waits());
+        ASSERT_TRUE(held.is_correct()) << held.blocks.broken_invariant();
+        EXPECT_FALSE(held.blocks.has_pending_work());
     }
     EXPECT_EQ(held.sets_in_use(), 1u);
 }
 
-TEST(RowBlocks, TakesOverASortedSetButForWhatIsGone) {
+TEST(RowBlocks, AdoptASortedSetWithoutItsRemovedBoxes) {
     Random random(3);
     Held held;
     for (Proxy p = 0; p < 5000; ++p) {
@@ -168,22 +168,22 @@ TEST(RowBlocks, TakesOverASortedSetButForWhatIsGone) {
     }
     RowSet sorted;
     sorted.build(held.boxes, held.settings);
-    std::vector<Proxy> gone;
-    for (Proxy p = 0; p < 5000; p += 9) gone.push_back(p);
-    gone.push_back(9);      // twice
-    gone.push_back(70000);  // never there
-    held.blocks.adopt(std::move(sorted), gone);
+    std::vector<Proxy> removed;
+    for (Proxy p = 0; p < 5000; p += 9) removed.push_back(p);
+    removed.push_back(9);      // twice
+    removed.push_back(70000);  // never stored
+    held.blocks.adopt(std::move(sorted), removed);
     std::erase_if(held.boxes, [](const Move& m) { return m.proxy % 9 == 0; });
     held.blocks.commit({}, held.settings);
-    EXPECT_TRUE(held.right()) << held.blocks.broken_invariant();
+    EXPECT_TRUE(held.is_correct()) << held.blocks.broken_invariant();
     std::vector<Move> all;
-    held.blocks.give_up(all);
+    held.blocks.extract_all(all);
     EXPECT_EQ(all.size(), held.boxes.size());
     EXPECT_EQ(held.blocks.size(), 0u);
     EXPECT_EQ(held.blocks.broken_invariant(), "");
 }
 
-RC_GTEST_PROP(RowBlocksProperty, AnswersAsBruteForceDoesWhateverComesAndGoes, ()) {
+RC_GTEST_PROP(RowBlocksProperty, FindsTheSamePairsAsBruteForceAfterAnyChanges, ()) {
     Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
     const float world = *rc::gen::element(0.0f, 10.0f, 200.0f, 1e6f);
     const float large_share = *rc::gen::element(0.0f, 0.02f, 0.5f);
@@ -197,9 +197,9 @@ RC_GTEST_PROP(RowBlocksProperty, AnswersAsBruteForceDoesWhateverComesAndGoes, ()
             return one_side ? m.box.lo.x < world / 8 * static_cast<float>(chance) : random.below(8) < chance;
         });
         held.add(random.below(random.below(2) == 0 ? 20 : 3000), random, world, large_share);
-        RC_ASSERT(held.right());
+        RC_ASSERT(held.is_correct());
         const std::vector<Move> query_boxes = queries_in(world, random);
-        RC_ASSERT(held.pairs_of(query_boxes) == held.judged(query_boxes));
+        RC_ASSERT(held.pairs_of(query_boxes) == held.expected_pairs(query_boxes));
     }
 }
 

@@ -10,7 +10,7 @@
 namespace fase::broad {
 namespace {
 
-std::vector<Move> drawn(const conformance::Scene& scene, std::size_t count) {
+std::vector<Move> random_boxes(const conformance::Scene& scene, std::size_t count) {
     Random random(6);
     std::vector<Move> boxes;
     while (boxes.size() < count)
@@ -19,7 +19,7 @@ std::vector<Move> drawn(const conformance::Scene& scene, std::size_t count) {
     return boxes;
 }
 
-/// In the order in which they are stored.
+/// Returns the records in stored order.
 std::vector<Move> records(const RowSet& set) {
     std::vector<Move> all;
     const RowView view = set.view();
@@ -31,45 +31,45 @@ bool same(const std::vector<Move>& a, const std::vector<Move>& b) {
                       [](const Move& x, const Move& y) { return x.proxy == y.proxy && x.box == y.box; });
 }
 
-/// So many that threads share them.
+/// Enough boxes for a sort on several threads.
 constexpr std::size_t many = 33000;
 
-TEST(RowSetShared, StoresTheSameForAnyNumberOfThreads) {
+TEST(RowSetParallel, StoresTheSameForAnyNumberOfThreads) {
     for (const conformance::Scene& scene : conformance::all_scenes()) {
         SCOPED_TRACE(scene.name);
-        const std::vector<Move> boxes = drawn(scene, many);
+        const std::vector<Move> boxes = random_boxes(scene, many);
         std::vector<Aabb> list;
         for (const Move& m : boxes) list.push_back(m.box);
-        RowSet moves_alone, list_alone;
-        ASSERT_TRUE(moves_alone.build(boxes, {}));
-        ASSERT_TRUE(list_alone.build(list, {}));
-        ASSERT_EQ(moves_alone.broken_invariant(boxes), "");
+        RowSet serial_moves, serial_list;
+        ASSERT_TRUE(serial_moves.build(boxes, {}));
+        ASSERT_TRUE(serial_list.build(list, {}));
+        ASSERT_EQ(serial_moves.broken_invariant(boxes), "");
         for (const int threads : {2, 3, 8}) {
             const auto tasks = make_thread_runner(threads);
             RowSet moves, of_list;
-            for (int step = 0; step < 2; ++step) {  // with the memory of the last one
+            for (int step = 0; step < 2; ++step) {  // reuses the memory of the previous step
                 ASSERT_TRUE(moves.build(boxes, {}, tasks.get()));
                 EXPECT_EQ(moves.broken_invariant(boxes), "");
-                EXPECT_TRUE(same(records(moves), records(moves_alone))) << threads;
+                EXPECT_TRUE(same(records(moves), records(serial_moves))) << threads;
                 ASSERT_TRUE(of_list.build(list, {}, tasks.get()));
-                EXPECT_TRUE(same(records(of_list), records(list_alone))) << threads;
+                EXPECT_TRUE(same(records(of_list), records(serial_list))) << threads;
             }
         }
     }
 }
 
-TEST(RowSetShared, LeavesThreadsWithoutAShareWhereAllBoxesAreInOneCell) {
+TEST(RowSetParallel, AcceptsThreadsWithoutCellsWhenAllBoxesAreInOneCell) {
     std::vector<Move> boxes = gas(many, 7);
     for (Move& m : boxes) m.box = boxes[0].box;
     boxes.back().box = {boxes[0].box.lo + Vec3{90, 90, 90}, boxes[0].box.hi + Vec3{90, 90, 90}};
-    RowSet alone, shared;
-    ASSERT_TRUE(alone.build(boxes, {}));
-    ASSERT_TRUE(shared.build(boxes, {}, make_thread_runner(8).get()));
-    EXPECT_EQ(shared.broken_invariant(boxes), "");
-    EXPECT_TRUE(same(records(shared), records(alone)));
+    RowSet serial, parallel;
+    ASSERT_TRUE(serial.build(boxes, {}));
+    ASSERT_TRUE(parallel.build(boxes, {}, make_thread_runner(8).get()));
+    EXPECT_EQ(parallel.broken_invariant(boxes), "");
+    EXPECT_TRUE(same(records(parallel), records(serial)));
 }
 
-TEST(RowSetShared, TellsOfABoxThatNoGridCanHold) {
+TEST(RowSetParallel, RefusesAnUnboundedBox) {
     const auto tasks = make_thread_runner(2);
     for (const std::size_t at : {std::size_t{0}, many / 2, many - 1}) {
         std::vector<Move> boxes = gas(many, 3);
@@ -83,7 +83,7 @@ TEST(RowSetShared, TellsOfABoxThatNoGridCanHold) {
     }
 }
 
-TEST(RowSetShared, ChoosesTheCellsAnewWhereBoxesHaveGoneElsewhere) {
+TEST(RowSetParallel, ChoosesNewCellsWhenAllBoxesHaveMovedAway) {
     const auto tasks = make_thread_runner(2);
     std::vector<Move> boxes = gas(many, 3);
     RowSet set;

@@ -38,36 +38,36 @@ struct World {
     }
 };
 
-TEST(RowPartition, LeavesBoxesWhereTheyStandWhenFewOfManyMove) {
+TEST(RowPartition, KeepsMostBoxesInBlocksWhenFewMove) {
     World world(20000, 1);
     RowPartition part;
     world.insert_into(part);
     part.commit({});
-    EXPECT_EQ(part.settled(), 0u);
+    EXPECT_EQ(part.in_blocks(), 0u);
     world.move(part, 100, 50);
     part.commit({});
     ASSERT_EQ(part.broken_invariant(), "");
-    EXPECT_EQ(part.settled(), 20000u - 50);
+    EXPECT_EQ(part.in_blocks(), 20000u - 50);
     for (int step = 0; step < 40; ++step) {
         world.move(part, 100, 50);
         part.commit({});
     }
-    EXPECT_EQ(part.settled(), 20000u - 50);
+    EXPECT_EQ(part.in_blocks(), 20000u - 50);
     for (int step = 0; step < 40; ++step) {
         world.move(part, 5000, 70);
         part.commit({});
     }
-    EXPECT_EQ(part.settled(), 20000u - 70) << "the first ones have come to rest";
+    EXPECT_EQ(part.in_blocks(), 20000u - 70) << "the first boxes are idle again";
     ASSERT_EQ(part.broken_invariant(), "");
 }
 
-TEST(RowPartition, SortsAllAnewWhenMostMove) {
+TEST(RowPartition, SortsAllBoxesWhenMostMove) {
     World world(20000, 2);
     RowPartition part;
     world.insert_into(part);
     for (int step = 0; step < 5; ++step) {
         part.commit({});
-        EXPECT_EQ(part.settled(), 0u);
+        EXPECT_EQ(part.in_blocks(), 0u);
         world.move(part, 0, 20000);
     }
     for (int step = 0; step < 10; ++step) {
@@ -75,34 +75,34 @@ TEST(RowPartition, SortsAllAnewWhenMostMove) {
         world.move(part, 0, 9);
     }
     part.commit({});
-    EXPECT_GT(part.settled(), 19000u);
+    EXPECT_GT(part.in_blocks(), 19000u);
     world.move(part, 0, 15000);
     part.commit({});
-    EXPECT_EQ(part.settled(), 0u);
+    EXPECT_EQ(part.in_blocks(), 0u);
     ASSERT_EQ(part.broken_invariant(), "");
 }
 
-TEST(RowPartition, TakesNoMoreMemoryThanItsBoxesNeed) {
+TEST(RowPartition, LimitsItsMemoryPerBox) {
     World world(30000, 5);
-    RowGrid still, asleep;
-    still.build_still(world.boxes);
-    EXPECT_LT(still.bytes(), 60u * 30000);
+    RowGrid static_boxes, asleep;
+    static_boxes.build_static(world.boxes);
+    EXPECT_LT(static_boxes.bytes(), 60u * 30000);
     asleep.build(world.boxes);
     EXPECT_LT(asleep.bytes(), 90u * 30000);
     for (const Move& m : world.boxes) asleep.set_awake(m.proxy, false);
     for (int step = 0; step < 70; ++step) asleep.commit();
-    EXPECT_LT(asleep.bytes(), 70u * 30000) << "no room is kept for what has long been asleep";
+    EXPECT_LT(asleep.bytes(), 70u * 30000) << "keeps no capacity for boxes that have slept for long";
     EXPECT_EQ(asleep.broken_invariant(), "");
 }
 
-TEST(RowPartition, ForgetsBlocksOfWhichNothingIsLeft) {
+TEST(RowPartition, DropsEmptyBlocks) {
     World world(9000, 3);
     RowPartition part;
     world.insert_into(part);
     part.commit({});
     part.erase(0);
     part.commit({});
-    EXPECT_EQ(part.settled(), 8999u);
+    EXPECT_EQ(part.in_blocks(), 8999u);
     for (Proxy p = 1; p < 9000; ++p) part.erase(p);
     part.insert(5, Aabb{{0, 0, 0}, {1, 1, 1}});
     part.commit({});
@@ -117,9 +117,8 @@ TEST(RowPartition, ForgetsBlocksOfWhichNothingIsLeft) {
     EXPECT_EQ(seen, 1u);
 }
 
-/// Two grids and a sorted set of all boxes at once, through a life in which now few, now many of them move, come, go,
-/// fall asleep and wake.
-RC_GTEST_PROP(RowPartitionProperty, FindsAllPairsThroughALifeOfCalmAndStorm, ()) {
+/// Random steps in which few or many boxes move, are erased and inserted, fall asleep and wake.
+RC_GTEST_PROP(RowPartitionProperty, FindsAllPairsWhileFewAndManyBoxesChange, ()) {
     World world(*rc::gen::inRange<std::size_t>(8200, 12000), *rc::gen::inRange<std::uint64_t>(0, 1u << 30));
     Random& random = world.random;
     RowGrid grid;
@@ -128,7 +127,7 @@ RC_GTEST_PROP(RowPartitionProperty, FindsAllPairsThroughALifeOfCalmAndStorm, ())
     Proxy next = static_cast<Proxy>(world.boxes.size());
     for (int step = 0; step < steps; ++step) {
         const std::size_t chance = random.below(4) == 0 ? 3 : 200;
-        const bool sleep = random.below(2) == 0, wake = random.below(2) == 0, come_and_go = random.below(2) == 0;
+        const bool sleep = random.below(2) == 0, wake = random.below(2) == 0, reinsert = random.below(2) == 0;
         for (Move& m : world.boxes) {
             if (random.below(chance) != 0) continue;
             const auto what = random.below(6);
@@ -139,7 +138,7 @@ RC_GTEST_PROP(RowPartitionProperty, FindsAllPairsThroughALifeOfCalmAndStorm, ())
                 grid.set_awake(m.proxy, false);
             } else if (what == 3 && wake) {
                 grid.set_awake(m.proxy, true);
-            } else if (what == 4 && come_and_go) {
+            } else if (what == 4 && reinsert) {
                 grid.erase(m.proxy);
                 m = {random.below(2) == 0 ? m.proxy : next++, world.draw()};
                 grid.insert(m.proxy, m.box);
@@ -151,7 +150,7 @@ RC_GTEST_PROP(RowPartitionProperty, FindsAllPairsThroughALifeOfCalmAndStorm, ())
         grid.commit();
         RC_ASSERT(grid.broken_invariant() == "");
         RC_ASSERT(grid.size() == world.boxes.size());
-        const std::vector<Pair> expected = judged(world.boxes);
+        const std::vector<Pair> expected = reference_pairs(world.boxes);
         RC_ASSERT(sorted_pairs(grid) == expected);
         std::vector<Pair> awake, found;
         for (const Pair pair : expected)
@@ -181,7 +180,7 @@ TEST(RowGridInBlocks, FindsTheSamePairsInTheSameOrderWithAnyNumberOfThreads) {
         EXPECT_TRUE(pairs == serial) << threads;
     }
     std::sort(serial.begin(), serial.end());
-    EXPECT_TRUE(serial == judged(world.boxes));
+    EXPECT_TRUE(serial == reference_pairs(world.boxes));
 }
 
 }  // namespace

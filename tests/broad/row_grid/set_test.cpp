@@ -22,7 +22,7 @@ std::vector<Pair> sorted(std::vector<Pair> pairs) {
     return pairs;
 }
 
-RC_GTEST_PROP(RowSetProperty, ShowsNoSearchARecordThatIsKilled, ()) {
+RC_GTEST_PROP(RowSetProperty, HidesErasedRecordsFromAllSearches, ()) {
     Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
     const float world = *rc::gen::element(0.0f, 5.0f, 40.0f, 1e6f);
     const auto count = *rc::gen::inRange<Proxy>(1, 300);
@@ -39,15 +39,15 @@ RC_GTEST_PROP(RowSetProperty, ShowsNoSearchARecordThatIsKilled, ()) {
         if (random.below(8) >= chance) continue;
         const Proxy p = set.view().proxies[i];
         std::erase_if(boxes, [&](const Move& m) { return m.proxy == p; });
-        set.kill(i);
+        set.erase_record(i);
     }
     RC_ASSERT(set.broken_invariant(boxes) == "");
-    RC_ASSERT(set.dead() + boxes.size() == set.size());
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
+    RC_ASSERT(set.tombstones() + boxes.size() == set.size());
+    BruteForce reference;
+    for (const Move& m : boxes) reference.insert(m.proxy, m.box);
 
     std::vector<Pair> expected, found;
-    find_pairs(judge, expected);
+    find_pairs(reference, expected);
     {
         row_grid::PairBlock block(found);
         row_grid::find_own_pairs(set.view(), 0, set.size(), block);
@@ -58,7 +58,7 @@ RC_GTEST_PROP(RowSetProperty, ShowsNoSearchARecordThatIsKilled, ()) {
     for (Proxy p = 1001; p < 1020; ++p) query_boxes.push_back({p, draw()});
     expected.clear();
     found.clear();
-    find_pairs_of(judge, query_boxes, expected);
+    find_pairs_of(reference, query_boxes, expected);
     {
         row_grid::PairBlock block(found);
         row_grid::find_query_pairs(set.view(), {query_boxes, {}}, block);
@@ -75,7 +75,7 @@ RC_GTEST_PROP(RowSetProperty, ShowsNoSearchARecordThatIsKilled, ()) {
     RC_ASSERT(visited == all);
 }
 
-RC_GTEST_PROP(RowSetProperty, TakesBoxesInWhereOthersWereKilled, ()) {
+RC_GTEST_PROP(RowSetProperty, InsertsBoxesInPlaceOfErasedOnes, ()) {
     Random random(*rc::gen::inRange<std::uint64_t>(0, 1u << 30));
     const float world = *rc::gen::element(0.0f, 5.0f, 20.0f, 1e6f);
     const auto count = *rc::gen::inRange<Proxy>(1, 400);
@@ -85,14 +85,14 @@ RC_GTEST_PROP(RowSetProperty, TakesBoxesInWhereOthersWereKilled, ()) {
     };
     std::vector<Move> boxes;
     for (Proxy p = 0; p < count; ++p) boxes.push_back({p, draw()});
-    std::vector<Move> with_holes = boxes;
-    for (Proxy p = 0; p < count; p += 5) with_holes.push_back({killed, boxes[p].box});
+    std::vector<Move> with_free_slots = boxes;
+    for (Proxy p = 0; p < count; p += 5) with_free_slots.push_back({tombstone, boxes[p].box});
     RowSet set;
-    set.build(with_holes, {.rows = *rc::gen::element(Rows::Table, Rows::List)});
-    set.make_holes();
+    set.build(with_free_slots, {.rows = *rc::gen::element(Rows::Table, Rows::List)});
+    set.make_free_slots();
     RC_ASSERT(set.broken_invariant(boxes) == "");
     Proxy next = count;
-    std::size_t taken = 0;
+    std::size_t inserted = 0;
     const auto record_of = [&](Proxy p) {
         const RowView view = set.view();
         return static_cast<std::uint32_t>(std::find(view.proxies, view.proxies + view.count, p) - view.proxies);
@@ -100,7 +100,7 @@ RC_GTEST_PROP(RowSetProperty, TakesBoxesInWhereOthersWereKilled, ()) {
     for (int step = 0; step < 60; ++step) {
         if (random.below(3) == 0 && !boxes.empty()) {
             const std::size_t at = random.below(boxes.size());
-            set.kill(record_of(boxes[at].proxy));
+            set.erase_record(record_of(boxes[at].proxy));
             boxes[at] = boxes.back();
             boxes.pop_back();
             continue;
@@ -109,23 +109,23 @@ RC_GTEST_PROP(RowSetProperty, TakesBoxesInWhereOthersWereKilled, ()) {
         if (random.below(2) == 0 && !boxes.empty()) m.box = boxes[random.below(boxes.size())].box;
         std::vector<std::uint32_t> before;
         for (const Move& other : boxes) before.push_back(record_of(other.proxy));
-        const auto moved = set.put(m);
+        const auto moved = set.try_insert(m);
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const std::uint32_t now = record_of(boxes[i].proxy);
             RC_ASSERT(now == before[i] || (moved && now >= moved->begin && now < moved->end));
         }
         if (!moved) continue;
-        ++taken;
+        ++inserted;
         const std::uint32_t mine = record_of(m.proxy);
         RC_ASSERT(mine >= moved->begin && mine < moved->end);
         boxes.push_back(m);
         RC_ASSERT(set.broken_invariant(boxes) == "");
     }
-    RC_CLASSIFY(taken > 10);
+    RC_CLASSIFY(inserted > 10);
     std::vector<Pair> expected, found;
-    BruteForce judge;
-    for (const Move& m : boxes) judge.insert(m.proxy, m.box);
-    find_pairs(judge, expected);
+    BruteForce reference;
+    for (const Move& m : boxes) reference.insert(m.proxy, m.box);
+    find_pairs(reference, expected);
     {
         row_grid::PairBlock block(found);
         row_grid::find_own_pairs(set.view(), 0, set.size(), block);

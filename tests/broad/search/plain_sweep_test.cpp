@@ -9,7 +9,7 @@
 namespace fase::broad {
 namespace {
 
-TEST(PlainSweep, FindsWhatTryingAllFinds) {
+TEST(PlainSweep, FindsTheSamePairsAsTestsOfAllPairs) {
     for (const conformance::Scene& scene : conformance::all_scenes()) {
         SCOPED_TRACE(scene.name);
         Random random(11);
@@ -22,11 +22,11 @@ TEST(PlainSweep, FindsWhatTryingAllFinds) {
         for (const Move& a : moves)
             for (const Move& b : moves)
                 if (a.proxy < b.proxy && overlaps(a.box, b.box)) expected.push_back({a.proxy, b.proxy});
-        EXPECT_TRUE(pairs == expected) << pairs.size() << " pairs, need " << expected.size();
+        EXPECT_TRUE(pairs == expected) << pairs.size() << " pairs; expected " << expected.size();
     }
 }
 
-TEST(PlainSweep, LeavesOutWhatIsNotWanted) {
+TEST(PlainSweep, SkipsPairsThatTheFilterRejects) {
     const std::vector<Move> same(4, Move{0, {{0, 0, 0}, {1, 1, 1}}});
     std::vector<Move> moves = same;
     for (Proxy p = 0; p < 4; ++p) moves[p].proxy = p;

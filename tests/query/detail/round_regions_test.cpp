@@ -17,7 +17,7 @@ Vec3 place(Random& random, float size) {
     return {x, y, z};
 }
 
-TEST(SphereRegion, CountsABoxThatItOnlyTouchesAndNotOneAHairBeyond) {
+TEST(SphereRegion, TouchesABoxOnItsSurfaceAndNotOneSlightlyBeyond) {
     const SphereRegion ball({0, 0, 0}, 5);
     EXPECT_TRUE(ball.touches({{3, 4, 0}, {9, 9, 9}}));
     EXPECT_FALSE(ball.touches({{std::nextafter(3.f, 4.f), 4, 0}, {9, 9, 9}}));
@@ -26,25 +26,25 @@ TEST(SphereRegion, CountsABoxThatItOnlyTouchesAndNotOneAHairBeyond) {
     EXPECT_TRUE(SphereRegion({1, 1, 1}, 0).touches({{1, 0, 0}, {2, 2, 2}}));
 }
 
-TEST(SphereRegion, ContainsABoxWhoseFarthestCornerItReaches) {
+TEST(SphereRegion, ContainsABoxWhoseFarthestCornerIsInside) {
     const SphereRegion ball({0, 0, 0}, 5);
     EXPECT_TRUE(ball.contains({{-3, -4, 0}, {3, 4, 0}}));
     EXPECT_FALSE(ball.contains({{-3, -4, 0}, {3, 4, 0.01f}}));
     EXPECT_FALSE(ball.contains({{0, 0, 0}, {1, 1, inf}}));
 }
 
-TEST(RoundRegions, LeaveOutBoxesThatAreNone) {
+TEST(RoundRegions, IgnoreEmptyAndNanBoxes) {
     for (const Aabb& none : {Aabb{}, Aabb{{1, 1, 1}, {-1, -1, -1}}, Aabb{{nan, 0, 0}, {1, 1, 1}},
                              Aabb{{nan, nan, nan}, {nan, nan, nan}}}) {
         EXPECT_FALSE(SphereRegion({0, 0, 0}, 5).touches(none));
         EXPECT_FALSE(SphereRegion({0, 0, 0}, 5).contains(none));
         EXPECT_FALSE(CapsuleRegion({0, 0, 0}, {1, 2, 3}, 5).touches(none));
-        EXPECT_FALSE(CapsuleRegion({0, 0, 0}, {1, 2, 3}, 5).meets(none));
+        EXPECT_FALSE(CapsuleRegion({0, 0, 0}, {1, 2, 3}, 5).touches_exactly(none));
         EXPECT_FALSE(PointRegion({0.5, 0.5, 0.5}).touches(none));
     }
 }
 
-TEST(CapsuleRegion, IsAsFarFromABoxAsItsSegment) {
+TEST(CapsuleRegion, ComputesTheDistanceFromASegmentToABox) {
     const Aabb unit{{-1, -1, -1}, {1, 1, 1}};
     EXPECT_EQ(squared_distance({-5, 3, 0}, {5, 3, 0}, unit), 4) << "along a face";
     EXPECT_EQ(squared_distance({4, 0, 0}, {9, 5, 0}, unit), 9) << "an end";
@@ -53,27 +53,27 @@ TEST(CapsuleRegion, IsAsFarFromABoxAsItsSegment) {
     EXPECT_NEAR(squared_distance({4, -2, 0}, {-2, 4, 0}, unit), 0, 1e-30) << "past its edge at (1, 1)";
     EXPECT_NEAR(squared_distance({5, -1, 0}, {-1, 5, 0}, unit), 2, 1e-12) << "the middle from the edge";
     EXPECT_EQ(squared_distance({0, 7, 0}, {3, 5, 0}, {{-inf, -inf, -inf}, {inf, 1, inf}}), 16) << "a half-space";
-    EXPECT_TRUE(CapsuleRegion({-5, 3, 0}, {5, 3, 0}, 2).meets(unit)) << "touching";
-    EXPECT_FALSE(CapsuleRegion({-5, 3, 0}, {5, 3, 0}, 1.99f).meets(unit));
+    EXPECT_TRUE(CapsuleRegion({-5, 3, 0}, {5, 3, 0}, 2).touches_exactly(unit)) << "touching";
+    EXPECT_FALSE(CapsuleRegion({-5, 3, 0}, {5, 3, 0}, 1.99f).touches_exactly(unit));
 }
 
-TEST(CapsuleRegion, LetsPassEveryBoxThatItMeetsAndEveryBoxAroundOne) {
+TEST(CapsuleRegion, IsConservativeAndMonotone) {
     Random random(5);
-    int met = 0, passed = 0;
+    int exact = 0, conservative = 0;
     for (int i = 0; i < 200'000; ++i) {
         const float size = i % 3 == 0 ? 1e6f : 1;
         const CapsuleRegion capsule(to_double(place(random, 4)), to_double(place(random, 4)), random.between(0, 2));
         const Vec3 at = place(random, 6), half = abs(place(random, i % 2 == 0 ? size : 0.5f));
         const Aabb box{at - half, at + half},
             around{box.lo - abs(place(random, size)), box.hi + abs(place(random, size))};
-        ASSERT_TRUE(!capsule.meets(box) || capsule.touches(box)) << i;
+        ASSERT_TRUE(!capsule.touches_exactly(box) || capsule.touches(box)) << i;
         ASSERT_TRUE(!capsule.touches(box) || capsule.touches(around)) << i;
         ASSERT_TRUE(!capsule.touches(box) || overlaps(capsule.bounds(), box)) << i;
-        met += capsule.meets(box) ? 1 : 0;
-        passed += capsule.touches(box) ? 1 : 0;
+        exact += capsule.touches_exactly(box) ? 1 : 0;
+        conservative += capsule.touches(box) ? 1 : 0;
     }
-    EXPECT_GT(met, 10'000);
-    EXPECT_LT(passed, met + met / 20) << "touches() lets pass too much";
+    EXPECT_GT(exact, 10'000);
+    EXPECT_LT(conservative, exact + exact / 20) << "touches() is too conservative";
 }
 
 }  // namespace
