@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Holds the tree to the drawing of ARCHITECTURE.md: fails on every include that the drawing does not allow.
 
-Usage: check_layers.py [REPOSITORY]. Prints file:line of each offence. Checked: an include of a layer that may not be
-included; an include that is not written from the repository's root or names no file; files that include each other in
+Usage: check_layers.py [REPOSITORY]. Prints file:line of each offence. Checked: an include of a layer, or of a room of a layer, that may
+not be included; an include that is not written from the repository's root or names no file; files that include each other in
 a circle; a folder that the drawing does not have.
 """
 import re
@@ -17,13 +17,53 @@ BELOW = {
     "broad": ["geometry"],
     "narrow": ["geometry"],
     "pairs": ["broad"],
-    "dynamics": ["narrow"],
-    "query": ["broad", "narrow"],
-    "world": ["query", "dynamics", "pairs"],
+    "dynamics": ["geometry"],
+    "query": ["broad"],
+    "world": ["narrow", "dynamics", "pairs"],
+    "drawing": ["math"],
     "scene": ["world"],
-    "record": ["world"],
-    "level": ["world"],
-    "atlas": ["math"],
+    "record": ["world", "drawing"],
+    "level": ["broad", "drawing"],
+    "atlas": ["core"],
+}
+# Folders inside a layer ("rooms"). A room may include the layer's own headers and the rooms named here; its headers are internal: other
+# layers may not include them, save those that are named here as shared. Files directly in a layer may include all of its rooms.
+ROOMS = {
+    "broad": {
+        "boxes": [],
+        "search": ["boxes"],
+        "builders": ["boxes", "search"],
+        "sweep": ["boxes", "search"],
+        "uniform_grid": ["boxes", "search"],
+        "row_grid": ["boxes", "search"],
+        "plane_tree": ["boxes", "search", "builders"],
+        "dynamic_bvh": ["boxes", "search", "builders"],
+        "wide_bvh": ["boxes", "search", "builders"],
+    },
+    "geometry": {"detail": [], "shapes": ["detail"]},
+    "narrow": {"detail": [], "pairs": ["detail"]},
+    "level": {"detail": [], "compiler": ["detail"], "visibility": ["detail"]},
+    "record": {"recording": [], "trace": [], "export": ["recording"]},
+    "scene": {"detail": [], "generate": [], "gltf": ["detail", "generate"]},
+}
+# Rooms whose headers other layers may include: (layer, room): layers.
+SHARED_ROOMS = {
+    ("core", "detail"): set(BELOW),
+    ("math", "detail"): {"geometry", "broad", "narrow", "dynamics"},
+    ("geometry", "shapes"): set(BELOW),
+    ("broad", "boxes"): {"level"},
+    ("broad", "builders"): {"level"},
+    ("broad", "search"): {"query", "pairs"},
+    ("broad", "row_grid"): {"pairs"},
+    ("dynamics", "solver"): {"world"},
+    ("pairs", "detail"): {"world"},
+}
+# Headers directly in `fase/`: what a component's users include. They may include every layer of their component and below.
+UMBRELLAS = {"fase/collision.hpp", "fase/world.hpp", "fase/io.hpp", "fase/fase.hpp"}
+COMPONENTS = {
+    "fase/collision.hpp": ["core", "math", "geometry", "broad", "narrow", "pairs", "query"],
+    "fase/world.hpp": ["dynamics", "world"],
+    "fase/io.hpp": ["drawing", "scene", "record", "level", "atlas"],
 }
 # Programs and tests may include every layer, themselves, and these folders.
 PROGRAMS = {"cli": ["bench", "viewer"], "bench": [], "examples": [], "viewer": [], "tests": ["bench", "cli"]}
@@ -52,6 +92,32 @@ def place_of(path):
     return parts[0], None
 
 
+def room_of(path):
+    """The room of a layer's file: "row_grid" of fase/broad/row_grid/set.hpp; None of a file directly in the layer."""
+    parts = Path(path).parts
+    return parts[2] if parts[0] == "fase" and len(parts) > 3 else None
+
+
+def room_objection(path, name):
+    """Why a file may not include that header of a room; None when it may."""
+    layer, room = place_of(path)[1], room_of(path)
+    target_layer, target = place_of(name)[1], room_of(name)
+    if target is None:
+        return None
+    if place_of(path)[0] == "examples":
+        return None if target == "shapes" else "is internal: examples include public headers only"
+    if place_of(path)[0] != "fase" or path in UMBRELLAS:
+        return None
+    if layer == target_layer:
+        allowed = ROOMS.get(layer, {}).get(room, [])
+        if room is None or room == target or target in allowed:
+            return None
+        return f"{layer}/{room} may include of its layer's rooms only {', '.join(allowed) or 'itself'}"
+    if layer in SHARED_ROOMS.get((target_layer, target), set()):
+        return None
+    return f"{target_layer}/{target} is internal to {target_layer}"
+
+
 def includes_of(root, path):
     """(line number, quote or bracket, included name) of each include of a file."""
     text = (root / path).read_text(encoding="utf-8", errors="replace")
@@ -75,11 +141,13 @@ def objection(root, path, quote, name):
     if folder == "fase":
         if target_folder != "fase":
             return "the library may not include a program, a benchmark or a test"
-        if target_layer not in reached_from(layer):
+        if name in UMBRELLAS:
+            return None if path in UMBRELLAS else "is for users of the library"
+        if path not in UMBRELLAS and target_layer not in reached_from(layer):
             return f"{layer} may include only {', '.join(sorted(reached_from(layer)))}"
     elif target_folder not in ("fase", folder, *PROGRAMS[folder]):
         return f"{folder} may not include {target_folder}"
-    return None
+    return room_objection(path, name)
 
 
 def first_circle(graph):
@@ -111,7 +179,7 @@ def main():
                 continue
             path = file.relative_to(root).as_posix()
             files += 1
-            if top == "fase" and place_of(path)[1] not in BELOW:
+            if top == "fase" and path not in UMBRELLAS and place_of(path)[1] not in BELOW:
                 offences.append(f"{path}:1: lies in no layer of the drawing")
                 continue
             for number, quote, name in includes_of(root, path):
@@ -120,6 +188,13 @@ def main():
                     offences.append(f'{path}:{number}: includes "{name}": {why}')
                 elif quote == '"':
                     graph.setdefault(path, []).append(name)
+    for umbrella, layers in COMPONENTS.items():
+        if not (root / umbrella).is_file():
+            continue
+        included = {name for _, _, name in includes_of(root, umbrella)}
+        public = {file.relative_to(root).as_posix() for layer in layers for file in (root / "fase" / layer).glob("*.hpp")}
+        for name in sorted(public - included):
+            offences.append(f"{umbrella}:1: misses {name}, which is public")
     circle = first_circle(graph)
     if circle:
         offences.append("a circle of includes: " + " -> ".join(circle))

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Plays traces with every width of SIMD and several numbers of threads: each frame's pairs must be those of a plain sweep.
+"""Checks the pairs of every frame of a trace against a plain sweep, for each SIMD width and several numbers of threads.
 
     tools/check_pairs.py [--fase build/release/fase] [--structure row_grid] [--frames 20] [--count 10000] [TRACE ...]
 
-Without traces, those of every kind of `fase generate` are made, of --count boxes. From 32,768 boxes on several threads sort them in another
-way than one does.
+Without a TRACE, generates one of each kind of `fase generate` with --count boxes. From 32,768 boxes, several threads sort them by another
+algorithm than one thread does.
 """
 import argparse
 import json
@@ -21,10 +21,10 @@ def run(arguments):
     return subprocess.run(arguments, capture_output=True, text=True, check=False)
 
 
-def made_traces(fase, folder, count):
-    """One trace of each kind that the command knows."""
-    told = run([fase, "generate", "--help"]).stdout
-    kinds = re.findall(r"^  (\w+) ", told[told.index("Traces:"):told.index("Examples:")], re.MULTILINE)
+def generate_traces(fase, folder, count):
+    """Yields one trace of each kind that the command can generate."""
+    help_text = run([fase, "generate", "--help"]).stdout
+    kinds = re.findall(r"^  (\w+) ", help_text[help_text.index("Traces:"):help_text.index("Examples:")], re.MULTILINE)
     for kind in kinds:
         path = Path(folder) / f"{kind}.aabt"
         run([fase, "generate", kind, "--count", count, "--frames", "40", "-o", path]).check_returncode()
@@ -43,18 +43,18 @@ def main():
               if "lacks" not in run([options.fase, "pairs", "none", "--simd", level]).stderr]
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:
-        for trace in options.traces or made_traces(options.fase, folder, options.count):
+        for trace in options.traces or generate_traces(options.fase, folder, options.count):
             hashes = set()
             for level in levels:
                 for threads in THREADS:
-                    for told in ([], ["--changes"]):
+                    for output in ([], ["--changes"]):
                         out = run([options.fase, "pairs", trace, "--structure", options.structure, "--frames", options.frames, "--check",
-                                   "--json", "--simd", level, "--threads", str(threads), *told])
+                                   "--json", "--simd", level, "--threads", str(threads), *output])
                         row = json.loads(out.stdout)[0]
                         hashes.add(row["hash"])
                         if out.returncode != 0:
                             wrong += 1
-                            print(f"{trace.stem}: WRONG with {level}, {threads} threads {' '.join(told)}", flush=True)
+                            print(f"{trace.stem}: WRONG with {level}, {threads} threads {' '.join(output)}", flush=True)
             wrong += len(hashes) != 1
             print(f"{trace.stem:14} {', '.join(levels)} x {THREADS} threads: {' '.join(sorted(hashes))}", flush=True)
     return 1 if wrong else 0

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Holds docs/tour.md to the examples: its code is theirs, its output is what they print.
+"""Checks that the code and output in docs/tour.md are those of the examples.
 
 Usage: check_tour.py [--write] PROGRAMS [REPOSITORY]. PROGRAMS is the folder that holds example_NAME for each
-examples/NAME.cpp (build/<preset>/examples). A block of ```cpp must be a run of whole lines of the example that was
-named last before it, indented as there or less; a block of ```text must be all that this example prints. With --write
-the blocks of output are renewed instead of checked; code is never written. Exit code 1 when something differs.
+examples/NAME.cpp (build/<preset>/examples). Each block belongs to the example named last before it. A ```cpp block must be
+consecutive full lines of that example, with the same or less indentation; a ```text block must be its full output. With --write
+the tool updates the output blocks instead of checking them; it never writes code. Exit code 1 when something differs.
 """
 import re
 import subprocess
@@ -17,15 +17,15 @@ BLOCK = re.compile(r"examples/(\w+)\.cpp|^```(cpp|text)\n(.*?)^```$", re.DOTALL 
 
 
 def is_part_of(block, source):
-    """Whether the block's lines stand in the source, one after the other, moved to the left alike."""
-    wanted = textwrap.dedent(block).splitlines()
+    """Whether the block is a run of consecutive source lines, apart from common indentation."""
+    expected = textwrap.dedent(block).splitlines()
     lines = source.splitlines()
-    return any(textwrap.dedent("\n".join(lines[i:i + len(wanted)])).splitlines() == wanted
-               for i in range(len(lines) - len(wanted) + 1))
+    return any(textwrap.dedent("\n".join(lines[i:i + len(expected)])).splitlines() == expected
+               for i in range(len(lines) - len(expected) + 1))
 
 
-def printed_by(program):
-    """All that a program prints; a program that fails fails the check."""
+def output_of_program(program):
+    """Returns the output of a program. Raises when the program fails."""
     done = subprocess.run([program], capture_output=True, text=True, timeout=120, check=False)
     if done.returncode != 0:
         raise RuntimeError(f"{program} ends with {done.returncode}: {done.stderr}")
@@ -33,26 +33,26 @@ def printed_by(program):
 
 
 def check(page, source_of, output_of):
-    """(objections, the page with its outputs renewed). `source_of` and `output_of` take an example's name."""
-    objections, example = [], None
+    """Returns the errors and the page with updated outputs. `source_of` and `output_of` take the name of an example."""
+    errors, example = [], None
 
-    def look_at(found):
+    def check_block(found):
         nonlocal example
         if found[1]:
             example = found[1]
             return found[0]
         line = page.count("\n", 0, found.start()) + 1
         if example is None:
-            objections.append(f"{PAGE}:{line}: a block before any example is named")
+            errors.append(f"{PAGE}:{line}: found a block before the first example name")
         elif found[2] == "cpp":
             if not is_part_of(found[3], source_of(example)):
-                objections.append(f"{PAGE}:{line}: this code is not in examples/{example}.cpp")
+                errors.append(f"{PAGE}:{line}: found code that is not in examples/{example}.cpp")
         elif found[3] != output_of(example):
-            objections.append(f"{PAGE}:{line}: examples/{example}.cpp prints something else")
+            errors.append(f"{PAGE}:{line}: found output that differs from examples/{example}.cpp; update with --write")
             return f"```text\n{output_of(example)}```"
         return found[0]
 
-    return objections, BLOCK.sub(look_at, page)
+    return errors, BLOCK.sub(check_block, page)
 
 
 def main():
@@ -60,13 +60,13 @@ def main():
     programs = Path(arguments[0]).resolve()
     root = Path(arguments[1] if len(arguments) > 1 else Path(__file__).parent.parent).resolve()
     page = (root / PAGE).read_text(encoding="utf-8")
-    objections, renewed = check(page, lambda name: (root / "examples" / f"{name}.cpp").read_text(encoding="utf-8"),
-                                lambda name: printed_by(programs / f"example_{name}"))
+    errors, updated = check(page, lambda name: (root / "examples" / f"{name}.cpp").read_text(encoding="utf-8"),
+                                lambda name: output_of_program(programs / f"example_{name}"))
     if len(arguments) < len(sys.argv) - 1:
-        (root / PAGE).write_text(renewed, encoding="utf-8")
-        objections = [text for text in objections if "prints something else" not in text]
-    print("\n".join(objections) or f"{PAGE} shows what the examples are and print")
-    sys.exit(1 if objections else 0)
+        (root / PAGE).write_text(updated, encoding="utf-8")
+        errors = [text for text in errors if "found output that differs" not in text]
+    print("\n".join(errors) or f"{PAGE} agrees with the examples")
+    sys.exit(1 if errors else 0)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Steps whole worlds with every structure of the broad phase, and with the automatic choice: all must end in the same bits.
+"""Steps worlds with every broad-phase structure and with the automatic choice, and checks that all end with the same hash.
 
-A broad phase may be right in every test of its own and still hang a world: a pair that comes a step late, an order that
-changes. Takes some minutes; not part of the tests, which step smaller worlds.
+A broad phase may pass all its own tests and still change a world: a pair that is reported one step late, a different
+order. Takes some minutes, so it is not part of the tests, which step smaller worlds.
 
     tools/check_worlds.py [--fase build/release/fase] [--steps 600] [--threads 1]
 """
@@ -12,7 +12,7 @@ import re
 import subprocess
 import sys
 
-# Kind, bodies, seed: ten worlds, small enough to be stepped with each structure in some seconds.
+# Kind, bodies (0: default), seed. Small enough that each structure steps a world in a few seconds.
 WORLDS = [("castle", 0, 1), ("large_pyramid", 1275, 1), ("many_pyramids", 2200, 1), ("hull_pile", 500, 1), ("washer", 1500, 1),
           ("stack", 20, 1), ("pile", 1000, 1), ("pile", 300, 2), ("sleepers", 5000, 1), ("domino", 600, 1)]
 
@@ -38,8 +38,8 @@ def main():
             if count:
                 arguments += ["--count", str(count)]
             hashes.setdefault(json.loads(run(arguments))["hash"], []).append(structure)
-        told = "; ".join(f"{value}: {', '.join(names)}" for value, names in hashes.items())
-        print(f"{kind:14} {options.steps} steps  " + (f"{next(iter(hashes))} from all {len(structures)}" if len(hashes) == 1 else "DIFFER: " + told),
+        groups = "; ".join(f"{value}: {', '.join(names)}" for value, names in hashes.items())
+        print(f"{kind:14} {options.steps} steps  " + (f"{next(iter(hashes))} from all {len(structures)}" if len(hashes) == 1 else "DIFFER: " + groups),
               flush=True)
         wrong += len(hashes) != 1
     return 1 if wrong else 0

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Counts test cases after ctest: the cases inside GoogleTest programs and node's test runner, one for every other entry.
+"""Counts test cases after ctest: those inside GoogleTest programs and Node's test runner, and one for each other entry.
 
 Usage: count_tests.py FOLDER, where FOLDER holds ctest.xml (ctest --output-junit) and cases/test_<suite>.xml
-(GTEST_OUTPUT=xml:). Prints what failed and why tests were skipped, and as last line "N passed, N failed, N skipped".
-Exit code 1 when a case failed or when nothing ran.
+(GTEST_OUTPUT=xml:). Prints the failed cases and the reasons for skipped ones; the last line is "N passed, N failed, N skipped".
+Exit code 1 when a case failed or no case ran.
 """
 import re
 import sys
@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 class Counts:
-    """Sums over all suites; `failed_names` in the order met, `skip_reasons` with how often each was given."""
+    """Sums over all suites; `failed_names` in order of occurrence, `skip_reasons` with their counts."""
 
     def __init__(self):
         self.passed = self.failed = self.skipped = 0
@@ -30,7 +30,7 @@ class Counts:
 
 
 def count_gtest(report, counts):
-    """Adds the cases of one GoogleTest XML report; returns how many of them failed."""
+    """Adds the cases of one GoogleTest XML report. Returns the number of failures."""
     failed = 0
     for case in report.iter("testcase"):
         skipped = case.find("skipped")
@@ -47,7 +47,7 @@ def count_gtest(report, counts):
 
 
 def count_entry(entry, cases, counts):
-    """Adds one ctest entry, from the most detailed source that it has."""
+    """Adds one ctest entry, from its most detailed report."""
     name, status = entry.get("name"), entry.get("status")
     output = entry.findtext("system-out") or ""
     report = cases / f"test_{name}.xml"
