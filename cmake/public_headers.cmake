@@ -1,6 +1,6 @@
 # Which headers a component installs: its public ones, and the internal ones that these include.
 
-# fase_headers_of(OUT LAYER…): the public headers of the layers, as paths from the repository's root. Public is what lies directly
+# fase_public_headers(OUT LAYER…): the public headers of the layers, as paths from the repository's root. Public is what lies directly
 # in a layer's folder, and every shape; what lies in a room below is internal.
 function(fase_public_headers out)
   set(found)

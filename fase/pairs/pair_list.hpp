@@ -21,7 +21,6 @@ public:
     std::vector<std::uint32_t> values;  ///< one for each pair
 
     [[nodiscard]] std::size_t size() const { return pairs.size(); }
-    [[nodiscard]] bool empty() const { return pairs.empty(); }
     [[nodiscard]] std::size_t bytes() const {
         return (pairs.capacity() + spare_pairs_.capacity()) * sizeof(broad::Pair) +
                (values.capacity() + spare_values_.capacity() + ended_.capacity()) * sizeof(std::uint32_t);
@@ -29,10 +28,6 @@ public:
     void clear() {
         pairs.clear();
         values.clear();
-    }
-    void reserve(std::size_t count) {
-        pairs.reserve(count);
-        values.reserve(count);
     }
     /// Appends a pair greater than all in the list.
     void append(broad::Pair pair, std::uint32_t value) {

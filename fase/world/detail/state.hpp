@@ -147,7 +147,7 @@ void mark_box_changed(const WorldState& state, std::uint32_t collider);
 /// mark_box_changed().
 void mark_edited(WorldState& state, std::uint32_t collider);
 
-// Motion states and pair lists (world/populations.cpp).
+// Motion states and pair lists (world/motion_states.cpp).
 /// Returns the pose of a collider's shape in world axes, with its position relative to the body's centre of mass.
 [[nodiscard]] LocalPose collider_pose(const WorldState& state, const Collider& collider);
 /// Returns the world pose of a collider's shape.
