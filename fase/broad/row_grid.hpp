@@ -4,6 +4,7 @@
 #include <span>
 
 #include "fase/broad/row_grid/partition.hpp"
+#include "fase/broad/row_grid_settings.hpp"
 #include "fase/broad/search/partitioned_search.hpp"
 #include "fase/core/tasks.hpp"
 

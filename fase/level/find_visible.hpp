@@ -6,7 +6,7 @@
 #include "fase/core/result.hpp"
 #include "fase/core/tasks.hpp"
 #include "fase/level/level_ray.hpp"
-#include "fase/level/visibility/visible_sets.hpp"
+#include "fase/level/visible_sets.hpp"
 
 namespace fase::level {
 

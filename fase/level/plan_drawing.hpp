@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fase/level/detail/drawing.hpp"
+#include "fase/level/drawing.hpp"
 #include "fase/level/map.hpp"
 
 namespace fase::level {

@@ -10,7 +10,7 @@
 #include "fase/core/detail/function_ref.hpp"
 #include "fase/core/result.hpp"
 #include "fase/core/tasks.hpp"
-#include "fase/level/visibility/triangles.hpp"
+#include "fase/level/triangles.hpp"
 
 namespace fase::level {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The signed distance of any two shapes with its witness points, in double.
 #include "fase/geometry/shapes.hpp"
-#include "fase/math/detail/transform_d.hpp"
+#include "fase/math/transform_d.hpp"
 
 namespace fase::narrow {
 

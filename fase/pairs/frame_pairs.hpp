@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fase/broad/row_grid/set.hpp"
+#include "fase/broad/row_grid_settings.hpp"
 #include "fase/broad/search/partitioned_search.hpp"
 #include "fase/broad/stats.hpp"
 #include "fase/core/tasks.hpp"

@@ -127,7 +127,7 @@ public:
         for_each_pair_with(other, [&](Id mine, Proxy theirs) { call(f, *this, mine.index, other, theirs); });
     }
 
-    /// Calls f for the values whose boxes touch a box or a region (fase/query/detail/round_regions.hpp), in order.
+    /// Calls f for the values whose boxes touch a box or a region (fase/query/round_regions.hpp), in order.
     template <class R, class F> void overlapping(const R& region, F&& f) { overlapping_in(*this, region, f); }
     template <class R, class F> void overlapping(const R& region, F&& f) const { overlapping_in(*this, region, f); }
     /// Calls f for the values whose boxes contain a point, in order.

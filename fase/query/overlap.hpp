@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fase/broad/search/nearest_first.hpp"
-#include "fase/query/detail/round_regions.hpp"
+#include "fase/query/round_regions.hpp"
 
 namespace fase::query {
 

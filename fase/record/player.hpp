@@ -6,7 +6,7 @@
 
 #include "fase/core/result.hpp"
 #include "fase/record/frame.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

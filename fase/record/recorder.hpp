@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fase/core/result.hpp"
-#include "fase/record/recording/recording_writer.hpp"
+#include "fase/record/recording_writer.hpp"
 #include "fase/world/world.hpp"
 
 namespace fase::record {

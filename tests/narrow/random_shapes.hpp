@@ -8,7 +8,7 @@
 #include "fase/core/random.hpp"
 #include "fase/geometry/hull_builder.hpp"
 #include "fase/geometry/shapes.hpp"
-#include "fase/math/detail/transform_d.hpp"
+#include "fase/math/transform_d.hpp"
 #include "tests/geometry/outside.hpp"
 
 namespace fase::test {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "fase/query/detail/round_regions.hpp"
+#include "fase/query/round_regions.hpp"
 #include "tests/query/boxes.hpp"
 
 namespace fase::query::test {

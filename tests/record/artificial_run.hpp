@@ -12,8 +12,8 @@
 
 #include "fase/core/hash.hpp"
 #include "fase/record/frame.hpp"
-#include "fase/record/recording/recording_writer.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/recording_writer.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <limits>
 
-#include "fase/math/detail/transform_d.hpp"
+#include "fase/math/transform_d.hpp"
 #include "fase/narrow/detail/core_view.hpp"
 
 namespace fase::narrow {

@@ -2,7 +2,7 @@
 /// Adds normals to a triangle mesh: smooth across flat edges, sharp across creases.
 #include <span>
 
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

@@ -10,7 +10,7 @@
 #include "fase/core/result.hpp"
 #include "fase/math/pose.hpp"
 #include "fase/record/recording/bytes.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

@@ -8,7 +8,7 @@
 #include "fase/record/frame.hpp"
 #include "fase/record/recording/bytes.hpp"
 #include "fase/record/recording/pose_code.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

@@ -7,7 +7,7 @@
 
 #include "fase/geometry/mesh.hpp"
 #include "fase/geometry/shapes.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

@@ -1,6 +1,6 @@
 /// Writes drawings as SVG.
 #include "fase/drawing/svg.hpp"
-#include "fase/level/detail/drawing.hpp"
+#include "fase/level/drawing.hpp"
 
 namespace fase::level {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "fase/level/detail/drawing.hpp"
+#include "fase/level/drawing.hpp"
 
 namespace fase::level {
 namespace {

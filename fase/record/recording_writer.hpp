@@ -12,7 +12,7 @@
 #include "fase/record/recording/block_writer.hpp"
 #include "fase/record/recording/chunk_packer.hpp"
 #include "fase/record/recording/output_file.hpp"
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 namespace fase::record {
 

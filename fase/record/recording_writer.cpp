@@ -1,5 +1,5 @@
 /// Packs rows and frames into chunks and writes them.
-#include "fase/record/recording/recording_writer.hpp"
+#include "fase/record/recording_writer.hpp"
 
 #include <utility>
 

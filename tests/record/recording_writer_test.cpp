@@ -1,5 +1,5 @@
 /// Tests a killed program, a full disk, and two recorders with the same file.
-#include "fase/record/recording/recording_writer.hpp"
+#include "fase/record/recording_writer.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

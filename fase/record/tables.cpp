@@ -1,5 +1,5 @@
 /// Encodes and decodes the tables of a recording.
-#include "fase/record/recording/tables.hpp"
+#include "fase/record/tables.hpp"
 
 #include <cmath>
 #include <optional>

@@ -1,5 +1,5 @@
 /// Sphere and capsule regions against boxes, in double.
-#include "fase/query/detail/round_regions.hpp"
+#include "fase/query/round_regions.hpp"
 
 namespace fase::query {
 namespace {

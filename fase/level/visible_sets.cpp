@@ -1,5 +1,5 @@
 /// Encodes bits as lengths of runs.
-#include "fase/level/visibility/visible_sets.hpp"
+#include "fase/level/visible_sets.hpp"
 
 namespace fase::level {
 

@@ -1,4 +1,4 @@
-#include "fase/query/detail/round_regions.hpp"
+#include "fase/query/round_regions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// Loops over all triangles of a mesh.
-#include "fase/level/visibility/triangles.hpp"
+#include "fase/level/triangles.hpp"
 
 #include <algorithm>
 #include <cmath>
