@@ -8,7 +8,9 @@
 #include <cmath>
 #include <string_view>
 
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/core/random.hpp"
 
 namespace fase::bench {
@@ -177,6 +179,8 @@ QueryScene stirred_pile(const QueryCounts& counts) {
 Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& counts) {
     const Result<std::vector<std::byte>> bytes = read_file(obj_file, max_bytes);
     if (!bytes) return bytes.error();
+    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Other)
+        return wrong_kind(obj_file, kind, "a mesh as OBJ text");
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     QueryScene scene;
     const std::size_t slash = obj_file.rfind('/');
@@ -191,7 +195,7 @@ Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& co
                                          : true;
         if (valid) continue;
         return Error{Status::Format,
-                     fmt::format("{}:{}", obj_file, number),
+                     detail::at_line(obj_file, number),
                      word == "v" ? "found a vertex without three numbers; expected x y z"
                                  : "found a face with missing vertices; expected three or more that exist",
                      {}};

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 
 namespace fase::bench {
 namespace {
@@ -85,8 +86,8 @@ Result<void> append_to_table(const std::string& file, const std::vector<std::str
     if (text.empty()) {
         text = head;
     } else if (text.rfind(head, 0) != 0) {
-        return Error{Status::Format, file + ":1", "found other columns; expected " + head.substr(0, head.size() - 1),
-                     "choose a new file"};
+        return Error{Status::Format, detail::at_line(file, 1),
+                     "found other columns; expected " + head.substr(0, head.size() - 1), "choose a new file"};
     }
     if (text.back() != '\n') text += '\n';
     for (const std::vector<std::string>& row : rows) text += line_of(row);

@@ -14,7 +14,9 @@
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/narrow/distance.hpp"
 #include "fase/scene/detail/json.hpp"
 
@@ -43,7 +45,8 @@ struct Verdict {
 };
 
 Error bad(const JsonValue& at, std::string problem) {
-    return {Status::Format, fmt::format("{}: {}", at.offset(), at.pointer()), std::move(problem), {}};
+    return {
+        Status::Format, fmt::format("{}: {}", detail::byte_text(at.offset()), at.pointer()), std::move(problem), {}};
 }
 
 /// The member `key` as a number; nullopt if it is missing or null.
@@ -174,11 +177,16 @@ Result<Verdict> check_case(const JsonValue& object) {
 Result<std::vector<Verdict>> check_file(const std::string& file) {
     const auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
+    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Json && kind != FileKind::Other)
+        return wrong_kind(file, kind, "pairs of shapes as JSON");
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     if (!document) return document.error();
     const std::optional<JsonValue> cases = document->root().find("cases");
     if (!cases || !cases->is(JsonKind::Array)) {
-        return Error{Status::Format, "0", "found no \"cases\"; expected an object with an array of that name", {}};
+        return Error{Status::Format,
+                     detail::byte_text(0),
+                     "found no \"cases\"; expected an object with an array of that name",
+                     {}};
     }
     std::vector<Verdict> verdicts;
     std::optional<Error> first_error;
@@ -245,7 +253,7 @@ int run_distance(const DistanceOptions& options) {
     if (!verdicts) {
         Error error = verdicts.error();
         const bool names_file = error.where.starts_with(options.file);
-        if (!names_file) error.where = options.file + ":" + error.where;
+        if (!names_file) error.where = options.file + ": " + error.where;
         return refuse(error);
     }
     Summary sum;

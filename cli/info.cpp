@@ -12,8 +12,10 @@
 #include "cli/common/command_registry.hpp"
 #include "cli/common/facts.hpp"
 #include "cli/common/output.hpp"
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
-#include "fase/record/format.hpp"
+#include "fase/level/map.hpp"
+#include "fase/level/wad.hpp"
 #include "fase/record/player.hpp"
 #include "fase/record/trace.hpp"
 #include "fase/scene/gltf.hpp"
@@ -157,16 +159,41 @@ Result<Facts> trace_facts(const InfoOptions& options) {
     return facts;
 }
 
+Result<Facts> wad_facts(const InfoOptions& options) {
+    const Result<level::Wad> wad = level::Wad::read(options.file);
+    if (!wad) return wad.error();
+    std::vector<std::string> maps, warnings;
+    for (const std::size_t marker : wad->map_markers()) {
+        maps.push_back(wad->lumps[marker].name);
+        const Result<level::Map> map = level::read_map(options.file, *wad, maps.back());
+        if (!map) warnings.push_back(map.error().text());
+    }
+    std::size_t bytes = 0;
+    for (const level::Lump& lump : wad->lumps) bytes += lump.bytes.size();
+    Facts facts;
+    facts.add("kind", wad->kind == level::Wad::Kind::Whole ? "WAD of a game (IWAD)" : "WAD of additions (PWAD)");
+    facts.add("lumps", wad->lumps.size());
+    facts.add("lump_bytes", bytes);
+    facts.add("map_count", maps.size());
+    facts.add("maps", std::move(maps));
+    facts.add("warnings", std::move(warnings));
+    return facts;
+}
+
 Result<Facts> facts_of(const InfoOptions& options) {
-    const Result<FileStart> start = read_start(options.file, 16);
+    const Result<FileStart> start = read_start(options.file, file_kind_bytes);
     if (!start) {
-        const bool unfinished = read_start(options.file + ".part", 16).has_value();
+        const bool unfinished = read_start(options.file + ".part", 1).has_value();
         return unfinished ? recording_facts(options) : Result<Facts>(start.error());
     }
-    const std::string_view head(reinterpret_cast<const char*>(start->bytes.data()), start->bytes.size());
-    if (head.starts_with(record::file_magic.substr(0, 7))) return recording_facts(options);
-    if (head.starts_with(record::trace_magic)) return trace_facts(options);
-    return scene_facts(options);
+    switch (const FileKind kind = kind_of(start->bytes)) {
+        case FileKind::Recording: return recording_facts(options);
+        case FileKind::Trace: return trace_facts(options);
+        case FileKind::Wad: return wad_facts(options);
+        case FileKind::Glb:
+        case FileKind::Json: return scene_facts(options);
+        default: return wrong_kind(options.file, kind, "a scene (.gltf, .glb), a recording, a trace or a WAD");
+    }
 }
 
 }  // namespace
@@ -182,9 +209,11 @@ int run_info(const InfoOptions& options) {
 void add_info(Command& program, CommandRegistry& registry) {
     auto& info = registry.options<InfoOptions>();
     Command command = program.add_command("info", "Print the kind and the contents of a file");
-    command.add_text("FILE", "A scene, a recording or a trace", info.file).required();
+    command.add_text("FILE", "A scene, a recording, a trace or a WAD", info.file).required();
     add_json(command, info.json);
-    command.set_footer("\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt");
+    command.set_footer(
+        "\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt\n  fase info "
+        "doom.wad");
     registry.on(command, [&info] { return run_info(info); });
 }
 

@@ -8,7 +8,7 @@ class Command;
 class CommandRegistry;
 
 struct InfoOptions {
-    std::string file;   ///< a glTF scene, a recording or a trace: its first bytes decide
+    std::string file;   ///< a glTF scene, a recording, a trace or a WAD: its first bytes decide
     bool json = false;  ///< one JSON value on stdout instead of lines
 };
 

@@ -9,7 +9,9 @@
 #include <string_view>
 
 #include "fase/atlas/png.hpp"
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 
 namespace fase::cli {
 namespace {
@@ -115,6 +117,8 @@ Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> file
 Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
     const Result<std::vector<std::byte>> bytes = read_file(path, max_text);
     if (!bytes) return bytes.error();
+    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Other && kind != FileKind::Empty)
+        return wrong_kind(path, kind, "a text with a width and a height per line");
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     std::vector<atlas::Size> sizes;
     for (std::size_t number = 1; !text.empty(); ++number) {
@@ -130,7 +134,7 @@ Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
         if (!good || size.width < 1 || size.height < 1 || size.width > atlas::max_page_side ||
             size.height > atlas::max_page_side)
             return Error{Status::Format,
-                         fmt::format("{}:{}", path, number),
+                         detail::at_line(path, number),
                          fmt::format("found \"{}\"; expected a width and a height of 1 to {}", whole.substr(0, 60),
                                      atlas::max_page_side),
                          {}};

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <unordered_map>
 
 #include "cli/common/output.hpp"
-#include "fase/core/detail/files.hpp"
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/level/bsp_compiler.hpp"
 #include "fase/level/level_room.hpp"
 #include "fase/level/level_solids.hpp"
@@ -137,9 +136,8 @@ private:
 }  // namespace
 
 bool is_wad(const std::string& path) {
-    const Result<FileStart> start = read_start(path, 4);
-    return start && start->bytes.size() == 4 &&
-           (std::memcmp(start->bytes.data(), "IWAD", 4) == 0 || std::memcmp(start->bytes.data(), "PWAD", 4) == 0);
+    const Result<FileKind> kind = kind_of_file(path);
+    return kind && *kind == FileKind::Wad;
 }
 
 Result<LevelScene> load_level_scene(const std::string& path, const std::string& map,

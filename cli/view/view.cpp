@@ -90,6 +90,7 @@ int run_view(const ViewOptions& options) {
     if (Result<void> checked = check_outputs(options, options.file); !checked) return refuse(checked.error());
     Result<record::Player> player = record::Player::open(options.file);
     if (!player) return refuse(player.error());
+    if (Result<void> has_frames = (*player).check_has_frames(); !has_frames) return refuse(has_frames.error());
     if (!(*player).lost().empty()) warn((*player).path() + ": " + (*player).lost());
     std::error_code ignored;
     if ((*player).path() == options.file && std::filesystem::exists(options.file + ".part", ignored)) {

@@ -15,9 +15,9 @@ struct ViewOptions {
 };
 
 /// Serves the recording on 127.0.0.1 until SIGINT or SIGTERM, or writes the requested files. Returns the exit code: 0;
-/// 2 the file is not a recording; 3 a file cannot be read or written, or the port is in use; 4 too large; 130 or 143
-/// when a signal ended it. Call before other threads start: the two signals are blocked in the calling thread and in
-/// those that it starts.
+/// 2 the file is not a recording, or no frame of it is complete; 3 a file cannot be read or written, or the port is in
+/// use; 4 too large; 130 or 143 when a signal ended it. Call before other threads start: the two signals are blocked in
+/// the calling thread and in those that it starts.
 int run_view(const ViewOptions& options);
 
 /// Adds the command to the program.

@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <cstring>
 
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 
 namespace fase::atlas {
 namespace {
@@ -138,14 +140,16 @@ bool write_all(png_structp png, png_infop info, PngIo& io, const Image& image) {
 }  // namespace
 
 Result<Image> read_png(std::span<const std::byte> bytes, const std::string& where) {
+    const FileKind kind = kind_of(bytes);
+    if (kind == FileKind::Other)
+        return Error{Status::Format, detail::at_byte(where, 0), "found no PNG signature; expected a PNG image", {}};
+    if (kind != FileKind::Png) return wrong_kind(where, kind, "a PNG image");
     PngIo io;
     io.next = bytes.data();
     io.left = io.size = bytes.size();
     const auto refuse = [&](std::string problem) {
-        return Error{Status::Format, fmt::format("{}:{}", where, io.size - io.left), std::move(problem), {}};
+        return Error{Status::Format, detail::at_byte(where, io.size - io.left), std::move(problem), {}};
     };
-    if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
-        return refuse("found no PNG signature; expected a PNG file");
     Handles handles;
     handles.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &io, on_error, on_warning);
     if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);

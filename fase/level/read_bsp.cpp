@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fase/core/detail/text.hpp"
 #include "fase/level/bsp_lumps.hpp"
 #include "fase/level/detail/little_endian.hpp"
 
@@ -174,7 +175,7 @@ private:
     /// Returns whether `count` entries of `size` bytes are left; fails if not.
     bool holds(std::string_view lump, const Cursor& in, std::size_t count, std::size_t size, std::string_view what) {
         if (!error_ && (in.failed() || count > in.left() / size))
-            fail(fmt::format("{}:{}", lump, in.at()),
+            fail(detail::at_byte(lump, in.at()),
                  fmt::format("found {} {}; expected them inside the lump ({} bytes left)", count, what, in.left()));
         return !error_;
     }

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
@@ -15,7 +17,7 @@ namespace {
 constexpr std::size_t header_bytes = 12, entry_bytes = 16, name_bytes = 8;
 
 Error at_byte(const std::string& name, std::size_t byte, std::string problem) {
-    return {Status::Format, fmt::format("{}:{}", name, byte), std::move(problem), {}};
+    return {Status::Format, detail::at_byte(name, byte), std::move(problem), {}};
 }
 
 std::string name_at(std::span<const std::byte> bytes, std::size_t at) {
@@ -38,11 +40,11 @@ bool is_map_lump(std::string_view name) {
 }  // namespace
 
 Result<Wad> Wad::parse(const std::string& name, std::span<const std::byte> bytes) {
+    if (const FileKind found = kind_of(bytes); found != FileKind::Wad)
+        return wrong_kind(name, found, "a WAD file, which begins with IWAD or PWAD");
     if (bytes.size() < header_bytes)
         return at_byte(name, 0, fmt::format("found {} bytes; expected a WAD header of {}", bytes.size(), header_bytes));
     const std::string magic(reinterpret_cast<const char*>(bytes.data()), 4);
-    if (magic != "IWAD" && magic != "PWAD")
-        return at_byte(name, 0, "found other first bytes; expected \"IWAD\" or \"PWAD\"");
     const std::int64_t count = read_i32(bytes, 4), directory = read_i32(bytes, 8);
     const auto size = static_cast<std::int64_t>(bytes.size());
     if (count < 0) return at_byte(name, 4, fmt::format("found {} lumps; expected 0 or more", count));

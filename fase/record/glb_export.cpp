@@ -312,6 +312,7 @@ private:
 }  // namespace
 
 Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options) {
+    if (Result<void> has_frames = player.check_has_frames(); !has_frames) return has_frames.error();
     if (!(options.metres >= 0) || !(options.degrees >= 0) || options.detail < 3 || options.detail > 1000) {
         return Error{
             Status::BadArgument, "GlbOptions", "expected metres and degrees of 0 or more, and detail of 3 to 1000", {}};

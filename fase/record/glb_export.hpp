@@ -18,8 +18,8 @@ struct GlbOptions {
 /// Returns a complete .glb file: one node per body (its name, and the meshes of its visuals or else of its shapes,
 /// without sensors), and one animation with translation and rotation of moving bodies and with step-wise scale (0 or 1)
 /// of bodies that are added or removed. Time is 0 at the first frame. For recordings far from the origin, the root node
-/// contains the offset. Errors: Format or Io if a frame cannot be read; BadArgument for options out of range; Capacity
-/// if the file would exceed the 4 GiB that the format allows. Keeps all keys in memory.
+/// contains the offset. Errors: Format or Io if there is no frame or one cannot be read; BadArgument for options out of
+/// range; Capacity if the file would exceed the 4 GiB that the format allows. Keeps all keys in memory.
 Result<std::vector<std::byte>> export_glb(Player& player, const GlbOptions& options = {});
 
 }  // namespace fase::record

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "fase/core/detail/file_kind.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/record/format.hpp"
 #include "fase/record/recording/block_reader.hpp"
 #include "fase/record/recording/bytes.hpp"
@@ -29,10 +31,16 @@ Error no_memory(const std::string& path) {
 
 }  // namespace
 
+constexpr std::string_view incomplete_chunk = "found an incomplete chunk";
+
 struct Player::State {
     explicit State(InputFile from) : file(std::move(from)) {}
 
-    [[nodiscard]] std::string at(std::uint64_t offset) const { return file.path() + ":" + std::to_string(offset); }
+    [[nodiscard]] std::string at(std::uint64_t offset) const { return detail::at_byte(file.path(), offset); }
+    /// The error of a recording without a complete frame.
+    [[nodiscard]] Error no_frame(std::string remedy) const {
+        return {Status::Format, file.path(), "found no complete frame; expected at least one", std::move(remedy)};
+    }
     Result<void> read_file_head() const;
     /// Reads a chunk into `bytes` and verifies its checksum.
     Result<ChunkBody> read_chunk(std::uint64_t offset);
@@ -62,9 +70,12 @@ Result<void> Player::State::read_file_head() const {
     const auto version = in.get<std::uint32_t>();
     const bool same = magic.size() == file_magic.size() &&
                       std::equal(magic.begin(), magic.end(), std::as_bytes(std::span(file_magic)).begin());
-    if (!same) return Error{Status::Format, at(0), "found no recording; expected a file that begins with FASEREC", {}};
+    const std::string_view begin(reinterpret_cast<const char*>(head.data()), length);
+    if (begin.empty() || (!same && !file_magic.starts_with(begin)))
+        return wrong_kind(file.path(), kind_of(std::span<const std::byte>(head).first(length)),
+                          "a recording, which begins with FASEREC");
     const auto check = in.get<std::uint32_t>();
-    if (in.failed()) return Error{Status::Format, at(length), "found an incomplete file head", {}};
+    if (in.failed()) return no_frame("the file ends at byte " + std::to_string(length) + ", inside its head");
     if (check != crc32(std::span<const std::byte>(head).first(12))) {
         return Error{Status::Format, at(8), "found a file head with a wrong checksum", {}};
     }
@@ -79,13 +90,13 @@ Result<void> Player::State::read_file_head() const {
 
 Result<ChunkBody> Player::State::read_chunk(std::uint64_t offset) {
     const std::uint64_t left = file.size() - std::min(offset, file.size());
-    if (left < chunk_frame_bytes) return Error{Status::Format, at(offset), "found an incomplete chunk", {}};
+    if (left < chunk_frame_bytes) return Error{Status::Format, at(offset), std::string(incomplete_chunk), {}};
     std::array<std::byte, 8> head;
     if (Result<void> read = file.read(offset, head); !read) return read.error();
     ByteReader in(head);
     const ChunkType type{in.get<std::uint32_t>()};
     const std::uint64_t length = in.get<std::uint32_t>();
-    if (length > left - chunk_frame_bytes) return Error{Status::Format, at(offset), "found an incomplete chunk", {}};
+    if (length > left - chunk_frame_bytes) return Error{Status::Format, at(offset), std::string(incomplete_chunk), {}};
     if (length > packed_head_bytes + max_raw_bytes) {
         return Error{Status::Format, at(offset), "found a chunk above the size limit", {}};
     }
@@ -167,7 +178,8 @@ Result<void> Player::State::scan() {
         good_bytes = offset;
     }
     if (!has_head) {
-        if (stopped.problem.empty()) stopped = {Status::Format, at(offset), "found no chunk", {}};
+        const bool is_cut = stopped.problem.empty() || stopped.problem == incomplete_chunk;
+        if (is_cut) return no_frame("the file ends at byte " + std::to_string(file.size()) + ", inside its head");
         stopped.status = Status::Format;
         return stopped;
     }
@@ -177,9 +189,12 @@ Result<void> Player::State::scan() {
         return {};
     }
     const Block last = blocks.empty() ? Block{} : blocks.back();
-    const std::string readable = std::to_string(last.first_frame + last.frames) + " frames are readable";
+    const std::uint64_t frames = last.first_frame + last.frames;
+    const std::string readable = frames == 0   ? "found no complete frame; expected at least one"
+                                 : frames == 1 ? "1 frame is readable"
+                                               : std::to_string(frames) + " frames are readable";
     if (!stopped.problem.empty()) {
-        lost = "byte " + std::to_string(offset) + " of " + std::to_string(file.size()) + ": " + stopped.problem +
+        lost = detail::byte_text(offset) + " of " + std::to_string(file.size()) + ": " + stopped.problem +
                "; the rest is lost, " + readable;
     } else if (!ended) {
         lost = "the recording was not finished: " + readable;
@@ -222,6 +237,8 @@ bool Player::complete() const { return state_->complete; }
 const std::string& Player::lost() const { return state_->lost; }
 std::uint64_t Player::file_bytes() const { return state_->file.size(); }
 std::uint64_t Player::good_bytes() const { return state_->good_bytes; }
+
+Result<void> Player::check_has_frames() const { return frames() > 0 ? Result<void>{} : state_->no_frame({}); }
 
 Result<Player> Player::open(const std::string& name) try {
     Result<InputFile> file = InputFile::open(name);

@@ -15,8 +15,9 @@ namespace fase::record {
 class Player {
 public:
     /// Opens `name`, or `name.part` of an unfinished recording if `name` does not exist. Reads the file once from start
-    /// to end and checks every chunk. Errors: Format, with the byte offset, if the head is damaged; Io if it cannot be
-    /// read. Damage after the head is not an error: see lost().
+    /// to end and checks every chunk. Errors: Format, with the byte offset, if the head is incomplete or damaged; Io if
+    /// it cannot be read. Damage after the head is not an error: see lost(). So a recording may have no frame: see
+    /// check_has_frames().
     static Result<Player> open(const std::string& name);
     Player(Player&&) noexcept;
     Player& operator=(Player&&) noexcept;
@@ -27,6 +28,8 @@ public:
     [[nodiscard]] const Tables& tables() const;
     /// Returns the number of readable frames: 0 to frames() - 1.
     [[nodiscard]] std::uint64_t frames() const;
+    /// Format, with the file's name, if no frame is readable: the file was cut before the end of its first frames.
+    [[nodiscard]] Result<void> check_has_frames() const;
     /// Returns the path of the opened file.
     [[nodiscard]] const std::string& path() const;
     /// Returns whether the recording was finished and is undamaged.

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <limits>
 
+#include "fase/core/detail/file_kind.hpp"
+#include "fase/core/detail/text.hpp"
+
 namespace fase::record {
 namespace {
 
@@ -43,7 +46,7 @@ Fault fault_of(const Aabb& box) {
 }  // namespace
 
 Error TraceReader::format_error(std::uint64_t offset, std::string problem, std::string remedy) const {
-    return {Status::Format, fmt::format("{}:{}", path(), offset), std::move(problem), std::move(remedy)};
+    return {Status::Format, detail::at_byte(path(), offset), std::move(problem), std::move(remedy)};
 }
 
 Error TraceReader::body_error(std::uint32_t body, std::size_t number, const std::string& problem) const {
@@ -70,8 +73,9 @@ Result<void> TraceReader::read_head() {
     if (Result<void> read = file_.read(0, begin); !read) return read;
     const auto letters = std::as_bytes(std::span(trace_magic));
     const std::size_t known = std::min(begin.size(), letters.size());
-    if (!std::equal(begin.begin(), begin.begin() + static_cast<std::ptrdiff_t>(known), letters.begin()))
-        return format_error(0, "found another kind of file; expected a trace, which begins with AABT");
+    if (begin.empty() ||
+        !std::equal(begin.begin(), begin.begin() + static_cast<std::ptrdiff_t>(known), letters.begin()))
+        return wrong_kind(path(), kind_of(begin), "a trace, which begins with AABT");
     if (size < head_size)
         return format_error(size, fmt::format("found {} bytes; expected a head of {}", size, head_size));
 

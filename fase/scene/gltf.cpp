@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/scene/gltf/assemble.hpp"
 
@@ -21,6 +22,9 @@ Result<Scene> read_gltf(const std::string& path) {
 }
 
 Result<Scene> read_gltf(const std::vector<std::byte>& bytes, const std::string& folder, const std::string& name) {
+    const FileKind kind = kind_of(bytes);
+    const bool may_be_gltf = kind == FileKind::Glb || kind == FileKind::Json || kind == FileKind::Other;
+    if (!may_be_gltf) return wrong_kind(name, kind, "a glTF scene (.gltf or .glb)");
     try {
         gltf::Document document(bytes, folder);
         return gltf::assemble(document);

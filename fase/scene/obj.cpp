@@ -8,7 +8,9 @@
 #include <optional>
 #include <string_view>
 
+#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/scene/detail/json.hpp"
 
 namespace fase::scene {
@@ -117,12 +119,14 @@ void add_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& face) {
 }  // namespace
 
 Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byte> bytes) {
+    const FileKind kind = kind_of(bytes);
+    if (kind != FileKind::Other && kind != FileKind::Empty) return wrong_kind(name, kind, "a mesh as OBJ text");
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     TriangleMesh mesh;
     Words words(text);
     std::optional<Error> error;
     const auto fail = [&](std::string problem) {
-        error = Error{Status::Format, fmt::format("{}:{}", name, words.line()), std::move(problem), {}};
+        error = Error{Status::Format, detail::at_line(name, words.line()), std::move(problem), {}};
     };
     const auto read_corner = [&] {
         Vec3 corner;
@@ -154,7 +158,7 @@ Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byt
         add_triangles(mesh, face);
     };
     if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos)
-        return Error{Status::Format, fmt::format("{}:{}", name, nul), "found a NUL byte; expected text", {}};
+        return Error{Status::Format, detail::at_byte(name, nul), "found a NUL byte; expected text", {}};
     if (text.empty()) return mesh;
     do {
         const std::string_view keyword = words.next();

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <new>
 
+#include "fase/core/detail/file_kind.hpp"
+#include "fase/core/detail/text.hpp"
 #include "fase/core/hash.hpp"
 #include "fase/world/detail/edit.hpp"
 
@@ -243,7 +245,7 @@ bool is_consistent(const WorldState& s) {
 }
 
 Error not_a_snapshot(std::size_t at, std::string found, std::string expected) {
-    return {Status::Format, "snapshot:" + std::to_string(at),
+    return {Status::Format, detail::at_byte("snapshot", at),
             "found " + std::move(found) + "; expected " + std::move(expected),
             "pass the bytes that snapshot() of this version returned"};
 }
@@ -285,8 +287,9 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
     head.number(version);
     head.number(size);
     head.number(sum);
-    if (head.failed || std::memcmp(magic, snapshot_magic, sizeof magic) != 0)
-        return not_a_snapshot(0, "other bytes", "a snapshot that begins with FASESNAP");
+    if (std::memcmp(magic, snapshot_magic, sizeof magic) != 0)
+        return not_a_snapshot(0, std::string(name_of(kind_of(snapshot))), "a snapshot, which begins with FASESNAP");
+    if (head.failed) return not_a_snapshot(snapshot.size(), "an incomplete head", "a complete snapshot");
     if (version != snapshot_version)
         return not_a_snapshot(8, "version " + std::to_string(version), "version " + std::to_string(snapshot_version));
     const std::span<const std::byte> payload = snapshot.subspan(head.at);

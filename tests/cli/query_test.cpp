@@ -111,7 +111,7 @@ TEST(Query, RefusesInvalidFilesAndOptionsByName) {
     expect_error_line(run_fase({"query", "stack", "--rays", "-1"}), 2, "--rays: found \"-1\"");
     const TemporaryFolder folder;
     write_file(folder / "t.aabt", "AABT");
-    expect_error_line(run_fase({"query", folder / "t.aabt"}), 2, "t.aabt:4: found 4 bytes");
+    expect_error_line(run_fase({"query", folder / "t.aabt"}), 2, "t.aabt: byte 4: found 4 bytes");
 }
 
 }  // namespace

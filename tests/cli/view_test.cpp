@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <optional>
@@ -404,6 +405,32 @@ TEST(View, RefusesOtherFilesAndUnwritablePaths) {
     EXPECT_EQ(code({folder / "run.faserec", "--html", "/dev/full"}), 3);
     const std::string bytes = read_file(folder / "run.faserec");
     EXPECT_EQ(bytes.substr(0, 7), "FASEREC");
+}
+
+TEST(View, RefusesARecordingWithoutACompleteFrameAndWritesNothing) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(record_run(folder / "run.faserec", ArtificialRun(3), 4));
+    const std::string bytes = read_file(folder / "run.faserec");
+    const std::size_t first_frames = bytes.find("FRMS");
+    ASSERT_NE(first_frames, std::string::npos);
+    const std::string cut = folder / "cut.faserec", page = folder / "page.html", glb = folder / "run.glb";
+    std::vector<std::size_t> lengths{1, 7, 8, 15, 16, 17, first_frames, first_frames + 8, first_frames + 20};
+    for (std::size_t length = 24; length < first_frames; length += 97) lengths.push_back(length);
+    for (const std::size_t length : lengths) {
+        write_file(cut, bytes.substr(0, length));
+        for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"--html", page}, {"--glb", glb}}) {
+            std::vector<std::string> arguments{"view", cut};
+            arguments.insert(arguments.end(), options.begin(), options.end());
+            Program program(arguments);
+            EXPECT_EQ(program.run(), 2) << length;
+            EXPECT_TRUE(
+                program.text().starts_with("fase: error: " + cut + ": found no complete frame; expected at least one"))
+                << program.text();
+            EXPECT_EQ(std::count(program.text().begin(), program.text().end(), '\n'), 1) << program.text();
+        }
+    }
+    EXPECT_FALSE(std::filesystem::exists(page));
+    EXPECT_FALSE(std::filesystem::exists(glb));
 }
 
 TEST(View, OpensTheValidPartOfADamagedRecordingAndWarns) {

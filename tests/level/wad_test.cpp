@@ -132,9 +132,9 @@ TEST(Wad, ReportsADirectoryOrLumpOutsideTheFile) {
         const auto wad = Wad::parse("room", changed);
         return wad ? std::string() : wad.error().text();
     };
-    EXPECT_NE(with(4, 0xffffffff).find("room:4: found -1 lumps"), std::string::npos);
+    EXPECT_NE(with(4, 0xffffffff).find("room: byte 4: found -1 lumps"), std::string::npos);
     EXPECT_NE(with(4, 0x7fffffff).find("expected it inside the file"), std::string::npos);
-    EXPECT_NE(with(8, 0x7ffffff0).find("room:8: found a directory"), std::string::npos);
+    EXPECT_NE(with(8, 0x7ffffff0).find("room: byte 8: found a directory"), std::string::npos);
     const std::size_t directory = read_u32(bytes, 8);
     EXPECT_NE(with(directory + 2 * 16 + 4, 0xffffffff).find("of -1 bytes"), std::string::npos);
     EXPECT_NE(with(directory + 2 * 16, 0x7fffffff).find("found lump 2"), std::string::npos);

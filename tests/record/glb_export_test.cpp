@@ -260,9 +260,20 @@ TEST(GlbExport, PlaysTheRecordedMotion) {
     }
 }
 
-TEST(GlbExport, EmptyRecordingGivesAValidFile) {
+TEST(GlbExport, ARecordingWithoutFramesIsRefused) {
     const TemporaryFolder folder;
-    const std::vector<std::byte> glb = exported(folder / "run", ArtificialRun(0), 0);
+    ASSERT_TRUE(record_run(folder / "run", ArtificialRun(3), 0));
+    Result<Player> player = Player::open(folder / "run");
+    ASSERT_TRUE(player);
+    const auto glb = export_glb(*player);
+    ASSERT_FALSE(glb);
+    EXPECT_EQ(glb.error().text(), folder / "run" + ": found no complete frame; expected at least one");
+    EXPECT_EQ(glb.status(), Status::Format);
+}
+
+TEST(GlbExport, ARecordingWithoutBodiesGivesAValidFile) {
+    const TemporaryFolder folder;
+    const std::vector<std::byte> glb = exported(folder / "run", ArtificialRun(0), 1);
     const Container container(glb);
     EXPECT_EQ(container.document["asset"]["version"], "2.0");
     EXPECT_FALSE(container.document.contains("buffers"));

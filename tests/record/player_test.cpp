@@ -86,6 +86,28 @@ TEST(Player, OpensATruncatedFileUpToItsLastCompleteBlock) {
     EXPECT_TRUE(complete);
 }
 
+TEST(Player, AFileThatIsCutBeforeItsFirstFramesHasNoCompleteFrame) {
+    const TemporaryFolder folder;
+    const Sample sample(folder);
+    const std::string name = folder / "cut", problem = name + ": found no complete frame; expected at least one";
+    for (std::size_t length = 1; length < sample.bytes.size(); ++length) {
+        write_file(name, sample.bytes.substr(0, length));
+        const Result<Player> player = Player::open(name);
+        if (!player) {
+            EXPECT_LT(length, sample.ends[0]);
+            EXPECT_TRUE(player.error().text().starts_with(problem)) << player.error().text();
+            EXPECT_EQ(player.status(), Status::Format);
+            continue;
+        }
+        const Result<void> has_frames = player->check_has_frames();
+        EXPECT_EQ(has_frames.has_value(), sample.complete_frames(length) > 0) << length;
+        if (!has_frames) {
+            EXPECT_EQ(has_frames.error().text(), problem) << length;
+            EXPECT_NE(player->lost().find("no complete frame"), std::string::npos) << player->lost();
+        }
+    }
+}
+
 TEST(Player, OpensAFileWithAnyBitFlippedUpToTheDamage) {
     const TemporaryFolder folder;
     const Sample sample(folder, 8, 10);

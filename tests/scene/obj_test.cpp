@@ -97,7 +97,7 @@ TEST(Obj, NamesTheLineOfAnError) {
     EXPECT_EQ(refusal(std::string(corners) + "f 1 2\n"), "x.obj:5: found a face of 2 corners; expected at least 3");
     EXPECT_EQ(refusal(std::string(corners) + "f 1 b 3\n"),
               "x.obj:5: found \"b\" as a corner of a face; expected a vertex number");
-    EXPECT_EQ(refusal(std::string("v 0\0 0", 6)), "x.obj:3: found a NUL byte; expected text");
+    EXPECT_EQ(refusal(std::string("v 0\0 0", 6)), "x.obj: byte 3: found a NUL byte; expected text");
 }
 
 TEST(Obj, SurvivesEveryTruncationAndFlippedBit) {

@@ -1,8 +1,9 @@
 #pragma once
-/// Error texts with values in them, for the layers that depend on no formatting library.
+/// Error texts with values and places in files, for the layers that depend on no formatting library.
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -42,6 +43,19 @@ template <std::integral T> [[nodiscard]] std::string text_of(T value) { return s
 /// `pattern` with each "{}" replaced by the next value: format("found {} points", 3).
 template <class... Values> [[nodiscard]] std::string format(std::string_view pattern, const Values&... values) {
     return fill(pattern, {text_of(values)...});
+}
+
+// Where in a file an error is. All readers use these, so that bytes and lines cannot be confused.
+
+/// "byte 123", counted from 0.
+[[nodiscard]] inline std::string byte_text(std::uint64_t byte) { return "byte " + std::to_string(byte); }
+/// A place in a file of bytes: "castle.glb: byte 123".
+[[nodiscard]] inline std::string at_byte(std::string_view file, std::uint64_t byte) {
+    return std::string(file) + ": " + byte_text(byte);
+}
+/// A place in a text file, counted from 1: "sizes.txt:12".
+[[nodiscard]] inline std::string at_line(std::string_view file, std::uint64_t line) {
+    return std::string(file) + ":" + std::to_string(line);
 }
 
 }  // namespace fase::detail

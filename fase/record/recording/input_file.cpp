@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "fase/core/detail/text.hpp"
 #include "fase/record/recording/output_file.hpp"
 
 namespace fase::record {
@@ -56,11 +57,11 @@ Result<void> InputFile::read(std::uint64_t offset, std::span<std::byte> bytes) c
             done += static_cast<std::size_t>(count);
         } else if (count == 0) {
             return Error{Status::Io,
-                         path_ + ":" + std::to_string(offset + done),
+                         detail::at_byte(path_, offset + done),
                          "found the end of the file: it was truncated while it was read",
                          {}};
         } else if (errno != EINTR) {
-            return system_error(path_ + ":" + std::to_string(offset + done), "cannot read", errno);
+            return system_error(detail::at_byte(path_, offset + done), "cannot read", errno);
         }
     }
     return {};

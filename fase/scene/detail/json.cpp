@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "fase/core/detail/text.hpp"
+
 namespace fase::scene {
 
 std::string_view name_of(JsonKind kind) {
@@ -94,7 +96,7 @@ public:
     Result<JsonDocument> finish(bool complete) {
         if (!problem_.empty() || !complete) {
             return Error{Status::Format,
-                         "byte " + std::to_string(*consumed_),
+                         fase::detail::byte_text(*consumed_),
                          problem_.empty() ? "found no valid JSON" : problem_,
                          {}};
         }
@@ -161,7 +163,7 @@ Result<JsonDocument> parse_json(std::string_view text, const JsonOptions& option
                      "save it as UTF-8 without BOM"};
     }
     if (const std::size_t nul = text.find('\0'); nul != text.npos) {  // nlohmann-json would stop here
-        return Error{Status::Format, "byte " + std::to_string(nul), "found a NUL byte; expected valid JSON here", {}};
+        return Error{Status::Format, fase::detail::byte_text(nul), "found a NUL byte; expected valid JSON here", {}};
     }
     std::size_t consumed = 0;
     JsonBuilder builder(options, &consumed);

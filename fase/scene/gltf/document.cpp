@@ -8,18 +8,19 @@
 #include <cmath>
 #include <cstring>
 
+#include "fase/core/detail/text.hpp"
 #include "fase/core/no_index.hpp"
 
 namespace fase::scene::gltf {
 namespace {
+
+using detail::byte_text;
 
 std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t offset) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
     return value;
 }
-
-std::string byte_text(std::size_t offset) { return "byte " + std::to_string(offset); }
 
 std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -25,5 +25,11 @@ TEST(Text, writes_the_shortest_number_that_reads_back) {
     EXPECT_EQ(rounded_text_of(0.0012345), "0.0012");
 }
 
+TEST(Text, bytes_and_lines_of_a_file_look_different) {
+    EXPECT_EQ(at_byte("a.glb", 0), "a.glb: byte 0");
+    EXPECT_EQ(at_byte("a.glb", 0xffffffffffull), "a.glb: byte 1099511627775");
+    EXPECT_EQ(at_line("a.obj", 12), "a.obj:12");
+}
+
 }  // namespace
 }  // namespace fase::detail
