@@ -86,8 +86,15 @@ Result<Figures> pack_rectangles(const AtlasCommand& command, const atlas::PackOp
 }
 
 Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions& pack_options) {
-    for (const char* ending : {".png", ".json"})
-        if (auto writable = check_output(command.output + ending); !writable) return writable.error();
+    for (const OutputKind& kind : {output::image, output::atlas_data}) {
+        if (has_extension(command.output, kind))
+            return Error{
+                Status::BadArgument, "--output",
+                fmt::format("found \"{}\"; expected the NAME of NAME.png and NAME.json", printable(command.output, 60)),
+                fmt::format("leave out {}", kind.extension)};
+        if (auto checked = check_output(command.output + std::string(kind.extension), {kind}); !checked)
+            return checked.error();
+    }
     const Result<std::vector<SpriteFile>> files = find_sprites(command.inputs);
     if (!files) return files.error();
     const Result<std::vector<atlas::Sprite>> sprites = read_sprites(*files);
@@ -101,7 +108,8 @@ Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions
     std::error_code ignored;
     for (const SpriteFile& file : *files) inputs.insert(fs::weakly_canonical(file.path, ignored));
     for (const atlas::NamedBytes& file : *outputs) {
-        if (auto writable = check_output(file.name); !writable) return writable.error();
+        if (auto checked = check_output(file.name, {output::image, output::atlas_data}); !checked)
+            return checked.error();
         if (inputs.contains(fs::weakly_canonical(file.name, ignored)))
             return Error{Status::Io, file.name, "found an input file; expected another file to write",
                          "write the pages outside the folder of the sprites"};
@@ -116,6 +124,11 @@ Result<Figures> pack(const AtlasCommand& command) {
     const bool measure_only = !command.rects.empty();
     if (measure_only && (!command.inputs.empty() || !command.output.empty()))
         return Error{Status::BadArgument, "--rects", "found FILES or --output with it; expected --rects alone", {}};
+    if (measure_only && (command.trim || command.array))
+        return Error{Status::BadArgument,
+                     command.trim ? "--trim" : "--array",
+                     "found --rects with it; expected images (FILES)",
+                     {}};
     if (!measure_only && command.inputs.empty())
         return Error{Status::BadArgument, "FILES", "found none; expected PNG files or a folder of them",
                      "see 'fase atlas --help'"};
@@ -157,10 +170,12 @@ void add_atlas(Command& program, CommandRegistry& registry) {
     command.add_flag("--power-of-two", "Pages whose sides are powers of two", options.power_of_two);
     command.add_flag("--array", "Frames as a JSON array instead of an object by name", options.array);
     command.add_text("--method", "best (default), kd_tree or skyline", options.method);
-    command.add_positive_number("--budget-ms", "Time for packing (default 50)", 1e7,
-                                [&options](double value) { options.budget_ms = value; });
-    command.add_whole_number("--tries", "Packing attempts per page instead of a time: the same pages on any machine", 1,
-                             1000000000, options.tries);
+    const Option budget = command.add_positive_number("--budget-ms", "Time for packing (default 50)", 1e7,
+                                                      [&options](double value) { options.budget_ms = value; });
+    command
+        .add_whole_number("--tries", "Packing attempts per page instead of a time: the same pages on any machine", 1,
+                          1000000000, options.tries)
+        .excludes(budget);
     add_json(command, options.json);
     command.set_footer(
         "\nExamples:\n"

@@ -70,9 +70,7 @@ Result<std::vector<Job>> jobs_of(const DrawOptions& options) {
     for (const std::string& name : names) {
         const std::string file =
             into_folder ? (std::filesystem::path(options.output) / (name + ".svg")).string() : options.output;
-        if (!file.ends_with(".svg"))
-            return Error{Status::BadArgument, file, "found another extension; expected .svg or a folder", {}};
-        if (auto writable = check_output(file, options.trace); !writable) return writable.error();
+        if (auto checked = check_output(file, {output::drawing}, options.trace); !checked) return checked.error();
         jobs.push_back({name, file});
     }
     return jobs;

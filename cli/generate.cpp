@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 
@@ -31,6 +32,28 @@ Error with_option_names(Error error) {
     return error;
 }
 
+template <class Kinds> bool has_kind(const Kinds& kinds, const std::string& name) {
+    return std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.name == name; });
+}
+
+/// Checks the kind, and that the output fits it. Some kinds are both scenes and traces.
+Result<void> check(const GenerateOptions& options) {
+    const bool is_scene = has_kind(scene::generators(), options.kind),
+               is_trace = has_kind(record::trace_kinds(), options.kind);
+    if (!is_scene && !is_trace) {
+        std::string kinds;
+        for (const auto& kind : scene::generators()) kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", kind.name);
+        for (const auto& kind : record::trace_kinds())
+            if (!has_kind(scene::generators(), std::string(kind.name))) kinds += fmt::format(", {}", kind.name);
+        return Error{Status::BadArgument,
+                     "KIND",
+                     fmt::format("found \"{}\"; expected one of {}", printable(options.kind, 60), kinds),
+                     {}};
+    }
+    if (is_scene && is_trace) return check_output(options.output, {output::scene, output::trace});
+    return is_scene ? check_output(options.output, {output::scene}) : check_output(options.output, {output::trace});
+}
+
 int write_scene(const GenerateOptions& options) {
     if (options.frames != 0)
         return refuse({Status::BadArgument, "--frames", "found a scene; expected a trace (.aabt)", {}});
@@ -54,14 +77,9 @@ int write_trace(const GenerateOptions& options) {
 }  // namespace
 
 int run_generate(const GenerateOptions& options) {
-    if (auto writable = check_output(options.output); !writable) return refuse(writable.error());
-    const bool scene = options.output.ends_with(".glb") || options.output.ends_with(".gltf");
-    if (!scene && !options.output.ends_with(".aabt")) {
-        return refuse({Status::BadArgument,
-                       options.output,
-                       "found another extension; expected .glb or .gltf for a scene, .aabt for a trace",
-                       {}});
-    }
+    if (auto checked = check(options); !checked) return refuse(checked.error());
+    // A device has any name: then the kind decides.
+    const bool scene = has_kind(scene::generators(), options.kind) && !has_extension(options.output, output::trace);
     try {
         return scene ? write_scene(options) : write_trace(options);
     } catch (const std::bad_alloc&) {

@@ -95,6 +95,9 @@ int run_pairs(const PairsOptions& options) {
     }
     const Result<std::vector<StructureChoice>> choices = structures_named(options.structure);
     if (!choices) return refuse(choices.error());
+    const bool is_bounded = options.structure == "all";
+    if (options.limit && !is_bounded)
+        return refuse({Status::BadArgument, "--limit", "found a single structure; expected --structure all", {}});
     Result<record::TraceReader> trace = record::TraceReader::open(options.trace);
     if (!trace) return refuse(trace.error());
 
@@ -112,12 +115,12 @@ int run_pairs(const PairsOptions& options) {
     const Result<TraceSurvey> surveyed = survey(*trace, options.frames, options.check, report);
     if (!surveyed) return refuse(surveyed.error());
     const std::unique_ptr<TaskRunner> tasks = make_thread_runner(options.threads);
-    const bool bounded = options.structure == "all";
     std::vector<PairFigures> rows;
     for (const StructureChoice& choice : *choices) {
         if (Interrupts::signal() != 0) break;
-        Result<PairFigures> row = measure_pairs(*trace, *surveyed, choice, *tasks, options.changes,
-                                                bounded ? std::optional<double>(options.limit) : std::nullopt, report);
+        Result<PairFigures> row =
+            measure_pairs(*trace, *surveyed, choice, *tasks, options.changes,
+                          is_bounded ? std::optional(options.limit.value_or(60)) : std::nullopt, report);
         if (!row) return refuse(row.error());
         if (Interrupts::signal() == 0) rows.push_back(*std::move(row));
     }

@@ -1,6 +1,7 @@
 #pragma once
 /// The command `fase pairs`: times how structures find the pairs of a trace of boxes, and checks the pairs.
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace fase::cli {
@@ -14,10 +15,10 @@ struct PairsOptions {
     std::string simd = "best";       ///< the widest SIMD instructions to use
     int threads = 1;                 ///< 0: all cores
     std::uint64_t frames = 0;        ///< number of frames from the first; 0: all
-    double limit = 60;               ///< s; with `all`: structures that take longer are skipped and marked so
-    bool check = false;              ///< compare the pairs of each frame with the reference
-    bool changes = false;            ///< report pairs that begin and end instead of listing all
-    bool json = false;               ///< one JSON array on stdout instead of a table
+    std::optional<double> limit;  ///< s, default 60; with `all`: structures that take longer are skipped and marked so
+    bool check = false;           ///< compare the pairs of each frame with the reference
+    bool changes = false;         ///< report pairs that begin and end instead of listing all
+    bool json = false;            ///< one JSON array on stdout instead of a table
 };
 
 /// Prints a row for each structure. Returns the exit code: 0; 1 the check found wrong pairs; 2 the trace is damaged or

@@ -72,23 +72,30 @@ struct Run {
 
 /// Checks that the output files can be written.
 Result<void> check_outputs(const RunOptions& options) {
-    for (const std::string* out : {&options.record, &options.trace}) {
-        if (out->empty()) continue;
-        if (auto writable = check_output(*out, options.scene); !writable) return writable;
-    }
+    if (!options.record.empty())
+        if (auto checked = check_output(options.record, {output::recording}, options.scene); !checked) return checked;
+    if (!options.trace.empty())
+        if (auto checked = check_output(options.trace, {output::trace}, options.scene); !checked) return checked;
     if (!options.trace.empty() && options.trace == options.record)
         return Error{Status::Io, options.trace, "found one file for --record and --trace; expected two", {}};
     return {};
 }
 
-/// Loads the scene of the options; for a WAD file, also fills `level`.
+/// Loads the scene of the options; for a WAD file, also fills `level`. Refuses options that the scene does not have.
 Result<scene::Scene> load(const RunOptions& options, std::optional<LevelScene>& level) {
+    const scene::GenerateOptions generate{options.count, options.seed.value_or(1)};
     if (!is_wad(options.scene)) {
         if (!options.map.empty())
             return Error{Status::BadArgument, "--map", "found a scene that is not a WAD; expected a WAD", {}};
-        return load_scene(options.scene, {options.count, options.seed});
+        const bool is_generated = !file_exists(options.scene);
+        if (!is_generated && (options.count > 0 || options.seed))
+            return Error{Status::BadArgument,
+                         options.count > 0 ? "--count" : "--seed",
+                         "found a scene file; expected a kind of 'fase generate' or a WAD",
+                         {}};
+        return load_scene(options.scene, generate);
     }
-    Result<LevelScene> loaded = load_level_scene(options.scene, options.map, {options.count, options.seed});
+    Result<LevelScene> loaded = load_level_scene(options.scene, options.map, generate);
     if (!loaded) return loaded.error();
     level = *std::move(loaded);
     return std::move(level->scene);

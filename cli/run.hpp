@@ -14,11 +14,11 @@ class CommandRegistry;
 inline constexpr std::uint64_t max_steps = 10'000'000;
 
 struct RunOptions {
-    std::string scene;              ///< a glTF file, a WAD, or a name of scene::generators()
-    std::string map;                ///< of a WAD file; empty: its first map
-    std::size_t count = 0;          ///< of a generated scene or a level: approximate number of bodies; 0: its default
-    std::uint64_t seed = 1;         ///< of a generated scene or a level
-    std::optional<double> seconds;  ///< simulated time; without seconds and steps: 10 s
+    std::string scene;      ///< a glTF file, a WAD, or a name of scene::generators()
+    std::string map;        ///< of a WAD file; empty: its first map
+    std::size_t count = 0;  ///< of a generated scene or a level: approximate number of bodies; 0: its default
+    std::optional<std::uint64_t> seed;   ///< of a generated scene or a level; default: 1
+    std::optional<double> seconds;       ///< simulated time; without seconds and steps: 10 s
     std::optional<std::uint64_t> steps;  ///< instead of seconds
     std::string structure = "auto";      ///< name of the broad phase
     int threads = 0;                     ///< 0: all cores

@@ -93,7 +93,7 @@ Result<void> save(const std::string& file, const std::vector<PairBenchRow>& rows
 
 int run_bench_pairs(const BenchPairsOptions& options) {
     if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
     const Interrupts interrupts;
     std::vector<PairBenchRow> rows;

@@ -72,8 +72,12 @@ bool is_wrong(const bench::QueryRow& row) {
 }  // namespace
 
 int run_bench_queries(const BenchQueriesOptions& options) {
+    if (!options.meshes.empty() && !options.scene.empty() && options.scene != "level")
+        return refuse({Status::BadArgument, "--mesh", "found another --scene with it; expected level", {}});
+    if (options.counts.items > 0 && options.scene == "level")
+        return refuse({Status::BadArgument, "--count", "found --scene level with it; expected static or pile", {}});
     if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
     const Result<std::vector<bench::QueryScene>> scenes = bench::query_scenes(options);
     if (!scenes) return refuse(scenes.error());

@@ -118,7 +118,7 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
 
 int run_bench_step(const BenchStepOptions& options) {
     if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
     const ProgressForm form = progress_form(options.json);
     const Interrupts interrupts;

@@ -73,7 +73,7 @@ Result<void> save(const std::string& file, const std::vector<SuddenRow>& rows) {
 
 int run_bench_sudden(const BenchSuddenOptions& options) {
     if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv); !writable) return refuse(writable.error());
+        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
     const Interrupts interrupts;
     std::optional<Progress> progress;

@@ -46,6 +46,12 @@ std::string usage_problem(const CLI::App& program, const CLI::ParseError& error)
                                            : "argument");
     } else if (no_command && is<CLI::RequiredError>(error)) {
         problem = "COMMAND: found none";
+    } else if (const std::size_t at = problem.find(" requires "); is<CLI::RequiresError>(error) && at != problem.npos) {
+        problem = fmt::format("{}: found no {}; expected both", problem.substr(0, at), problem.substr(at + 10));
+    } else if (const std::size_t with = problem.find(" excludes ");
+               is<CLI::ExcludesError>(error) && with != problem.npos) {
+        problem = fmt::format("{}: found {} with it; expected one of the two", problem.substr(0, with),
+                              problem.substr(with + 10));
     } else if (is<CLI::ArgumentMismatch>(error)) {
         // "--steps: At Most 1 required but received 2", "--steps: 1 required N missing"
         const bool missing = problem.ends_with("missing");
@@ -126,6 +132,9 @@ Option add_count(Command& command, const std::string& help, std::size_t& count) 
 }
 
 Option add_seed(Command& command, const std::string& help, std::uint64_t& seed) {
+    return command.add_whole_number("--seed", help, 0, ~0ull, seed);
+}
+Option add_seed(Command& command, const std::string& help, std::optional<std::uint64_t>& seed) {
     return command.add_whole_number("--seed", help, 0, ~0ull, seed);
 }
 

@@ -85,6 +85,7 @@ Option add_threads(Command& command, const std::string& help, std::uint64_t min,
 Option add_count(Command& command, const std::string& help, std::size_t& count);
 /// `--seed N`, any 64-bit number.
 Option add_seed(Command& command, const std::string& help, std::uint64_t& seed);
+Option add_seed(Command& command, const std::string& help, std::optional<std::uint64_t>& seed);
 /// `--json`.
 Option add_json(Command& command, bool& json);
 

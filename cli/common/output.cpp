@@ -37,6 +37,53 @@ std::size_t printable_length(std::string_view text) {
 
 Error cannot_write(const std::string& path, std::string problem) { return {Status::Io, path, std::move(problem), {}}; }
 
+/// Checks that a regular file can be created or replaced. `info`: of the existing file, or nullptr.
+Result<void> check_writable(const std::string& path, const struct stat* info, const std::string& input) {
+    if (info != nullptr) {
+        if (S_ISDIR(info->st_mode)) return cannot_write(path, "found a folder; expected a file to write");
+        struct stat source {};
+        if (!input.empty() && ::stat(input.c_str(), &source) == 0 && source.st_dev == info->st_dev &&
+            source.st_ino == info->st_ino) {
+            return cannot_write(path, "found the input file; expected another file to write");
+        }
+        if (::access(path.c_str(), W_OK) != 0)
+            return cannot_write(path, "found a read-only file; expected a writable one");
+        if (!S_ISREG(info->st_mode)) return {};
+    } else if (errno == ENAMETOOLONG || errno == ELOOP) {
+        return cannot_write(printable(path, 60), std::string("cannot write: ") + std::strerror(errno));
+    }
+    const std::size_t slash = path.rfind('/');
+    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+    struct stat folder_info {};
+    if (::stat(folder.c_str(), &folder_info) != 0 || !S_ISDIR(folder_info.st_mode)) {
+        return cannot_write(path, "found no folder \"" + folder + "\"; expected an existing one");
+    }
+    if (path.back() == '/') return cannot_write(path, "found a folder's name; expected a file's");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        return cannot_write(path, "found the read-only folder \"" + folder + "\"; expected a writable one");
+    }
+    return {};
+}
+
+Result<void> check_extension(const std::string& path, std::initializer_list<OutputKind> kinds) {
+    std::string expected;
+    for (const OutputKind& kind : kinds) {
+        if (has_extension(path, kind)) return {};
+        expected += fmt::format("{}{}{}{} for {}", expected.empty() ? "" : ", ", kind.extension,
+                                kind.other_extension.empty() ? "" : " or ", kind.other_extension, kind.name);
+    }
+    const std::string name = path.substr(path.rfind('/') + 1);
+    const std::size_t dot = name.rfind('.');
+    const bool has_none = dot == std::string::npos || dot == 0;
+    return Error{Status::BadArgument,
+                 path,
+                 fmt::format("found {}; expected {}",
+                             has_none ? std::string("no extension")
+                                      : fmt::format("the extension \"{}\"", printable(name.substr(dot), 20)),
+                             expected),
+                 {}};
+}
+
 }  // namespace
 
 int exit_code(Status status) {
@@ -105,33 +152,17 @@ int finish_output(int code) {
     return code == exit_ok ? io_code : code;
 }
 
-Result<void> check_output(const std::string& path, const std::string& input) {
+bool has_extension(const std::string& path, const OutputKind& kind) {
+    return path.ends_with(kind.extension) || (!kind.other_extension.empty() && path.ends_with(kind.other_extension));
+}
+
+Result<void> check_output(const std::string& path, std::initializer_list<OutputKind> kinds, const std::string& input) {
     if (path.empty()) return Error{Status::BadArgument, "output", "found an empty name; expected a file", {}};
     struct stat info {};
-    if (::stat(path.c_str(), &info) == 0) {
-        if (S_ISDIR(info.st_mode)) return cannot_write(path, "found a folder; expected a file to write");
-        struct stat source {};
-        if (!input.empty() && ::stat(input.c_str(), &source) == 0 && source.st_dev == info.st_dev &&
-            source.st_ino == info.st_ino) {
-            return cannot_write(path, "found the input file; expected another file to write");
-        }
-        if (::access(path.c_str(), W_OK) != 0)
-            return cannot_write(path, "found a read-only file; expected a writable one");
-        if (!S_ISREG(info.st_mode)) return {};
-    } else if (errno == ENAMETOOLONG || errno == ELOOP) {
-        return cannot_write(printable(path, 60), std::string("cannot write: ") + std::strerror(errno));
-    }
-    const std::size_t slash = path.rfind('/');
-    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    struct stat folder_info {};
-    if (::stat(folder.c_str(), &folder_info) != 0 || !S_ISDIR(folder_info.st_mode)) {
-        return cannot_write(path, "found no folder \"" + folder + "\"; expected an existing one");
-    }
-    if (path.back() == '/') return cannot_write(path, "found a folder's name; expected a file's");
-    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-        return cannot_write(path, "found the read-only folder \"" + folder + "\"; expected a writable one");
-    }
-    return {};
+    const bool exists = ::stat(path.c_str(), &info) == 0;
+    if (Result<void> writable = check_writable(path, exists ? &info : nullptr, input); !writable) return writable;
+    const bool is_device = exists && !S_ISREG(info.st_mode);
+    return is_device ? Result<void>{} : check_extension(path, kinds);
 }
 
 }  // namespace fase::cli

@@ -1,5 +1,6 @@
 #pragma once
 /// Output that all commands share: exit codes, error lines, text that is safe to print, checks of output files.
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -33,8 +34,28 @@ void guard_standard_streams();
 /// line. Call last.
 [[nodiscard]] int finish_output(int code);
 
-/// Checks, without writing, that a file can be written at `path`. Io when it is a folder, read-only, the same file as
-/// `input` (empty: no input file), or when its folder is missing or read-only. BadArgument for an empty path.
-Result<void> check_output(const std::string& path, const std::string& input = {});
+/// A kind of file that commands write, and the extensions of its names.
+struct OutputKind {
+    std::string_view name;  ///< "a recording"
+    std::string_view extension;
+    std::string_view other_extension = {};  ///< empty: none
+};
+
+namespace output {
+inline constexpr OutputKind recording{"a recording", ".faserec"}, trace{"a trace", ".aabt"}, page{"a page", ".html"},
+    animation{"an animation", ".glb"}, scene{"a scene", ".glb", ".gltf"}, wad{"a WAD", ".wad"},
+    drawing{"a drawing", ".svg"}, image{"an image", ".png"}, atlas_data{"the data of an atlas", ".json"},
+    table{"a table", ".csv"};
+}  // namespace output
+
+/// Whether the name ends with an extension of that kind.
+[[nodiscard]] bool has_extension(const std::string& path, const OutputKind& kind);
+
+/// Checks, without writing, that a file of one of the kinds can be written at `path`. All output options use it, before
+/// any other work. Io when it is a folder, read-only, the same file as `input` (empty: no input file), or when its
+/// folder is missing or read-only. BadArgument for an empty path, and for another extension; devices and pipes may have
+/// any name.
+Result<void> check_output(const std::string& path, std::initializer_list<OutputKind> kinds,
+                          const std::string& input = {});
 
 }  // namespace fase::cli

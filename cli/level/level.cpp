@@ -84,6 +84,19 @@ Result<ParsedOptions> parse_options(const LevelCommand& command) {
     if (command.rays > 0 && !command.pvs)
         return Error{
             Status::BadArgument, "--rays", "found no --pvs; expected it with --rays, which check the visible sets", {}};
+    if (command.heights && !command.pvs && command.point.empty())
+        return Error{
+            Status::BadArgument, "--heights", "found no --pvs and no --point; expected one of them with it", {}};
+    if (command.output.empty() && (command.gl || command.extended))
+        return Error{Status::BadArgument,
+                     command.gl ? "--gl" : "--extended",
+                     "found no --output; expected it with the kind of nodes to write",
+                     {}};
+    if (options.read && (!command.weight.empty() || !command.effort.empty()))
+        return Error{Status::BadArgument,
+                     command.weight.empty() ? "--effort" : "--weight",
+                     "found --lumps with it; expected a tree to compile",
+                     {}};
     options.sight = {options.point, command.pvs, command.heights ? level::Heights::Counted : level::Heights::Ignored,
                      command.rays};
     const bool one_map = !command.svg.empty() || !command.png.empty() || !command.point.empty();
@@ -205,9 +218,11 @@ Result<void> write_wad(const LevelCommand& command, const ParsedOptions& options
 Result<int> compile_maps(const LevelCommand& command) {
     const Result<ParsedOptions> options = parse_options(command);
     if (!options) return options.error();
-    for (const std::string* file : {&command.output, &command.svg, &command.png})
+    const std::pair<const std::string*, OutputKind> outputs[] = {
+        {&command.output, output::wad}, {&command.svg, output::drawing}, {&command.png, output::image}};
+    for (const auto& [file, kind] : outputs)
         if (!file->empty())
-            if (auto writable = check_output(*file, command.file); !writable) return writable.error();
+            if (auto checked = check_output(*file, {kind}, command.file); !checked) return checked.error();
     Result<Wad> wad = Wad::read(command.file);
     if (!wad) return wad.error();
     const Result<std::vector<std::size_t>> markers = markers_of(command, *wad);
@@ -257,6 +272,7 @@ int run_mesh(const LevelCommand& command) {
                                                      {"--extended", command.extended},
                                                      {"--pvs", command.pvs},
                                                      {"--heights", command.heights},
+                                                     {"--stats", command.stats},
                                                      {"--check", command.check}};
     for (const auto& [option, given] : wad_only)
         if (given) return refuse({Status::BadArgument, option, "found a mesh; expected a WAD", {}});

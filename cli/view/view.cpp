@@ -28,11 +28,9 @@ void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", p
 
 /// Checks that the output files can be written and differ from the input.
 Result<void> check_outputs(const ViewOptions& options, const std::string& input) {
-    for (const std::string* out : {&options.html, &options.glb}) {
-        if (out->empty()) continue;
-        if (Result<void> checked = check_output(*out, input); !checked) return checked;
-    }
-    return {};
+    if (!options.html.empty())
+        if (Result<void> checked = check_output(options.html, {output::page}, input); !checked) return checked;
+    return options.glb.empty() ? Result<void>{} : check_output(options.glb, {output::animation}, input);
 }
 
 /// The valid bytes of a recording.
@@ -113,9 +111,12 @@ void add_view(Command& program, CommandRegistry& registry) {
     auto& view = registry.options<ViewOptions>();
     Command command = program.add_command("view", "Show a recording in the browser");
     command.add_text("FILE", "A recording of 'fase run --record'", view.file).required();
-    command.add_text("--html", "Write one self-contained page instead of serving", view.html);
-    command.add_text("--glb", "Write the motion as a glTF animation instead of serving", view.glb);
-    command.add_whole_number("--port", "Serve on 127.0.0.1:N (default: any free port)", 0, 65535, view.port);
+    const Option html = command.add_text("--html", "Write one self-contained page instead of serving", view.html);
+    const Option glb = command.add_text("--glb", "Write the motion as a glTF animation instead of serving", view.glb);
+    Option port =
+        command.add_whole_number("--port", "Serve on 127.0.0.1:N (default: any free port)", 0, 65535, view.port);
+    port.excludes(html);
+    port.excludes(glb);
     command.set_footer(
         "\nExamples:\n"
         "  fase view castle.faserec\n"

@@ -46,7 +46,9 @@ TEST_F(BenchQueries, AppendsARowPerKindToTheCsvFile) {
 TEST_F(BenchQueries, RefusesInvalidOptions) {
     EXPECT_EQ(bench({"--contender", "fastest"}).code, 2);
     EXPECT_EQ(bench({"--scene", "moon"}).code, 2);
-    EXPECT_EQ(bench({"--scene", "level", "--mesh", "/no/such/file.obj"}).code, 3);
+    expect_error_line(bench({"--scene", "level"}), 2, "--count: found --scene level with it");
+    expect_error_line(bench({"--scene", "pile", "--mesh", "x.obj"}), 2, "--mesh: found another --scene with it");
+    EXPECT_EQ(run_fase({"bench", "queries", "--scene", "level", "--mesh", "/no/such/file.obj"}).code, 3);
     const Outcome outcome = bench({"--contender", "wide_bvh,fastest"});
     EXPECT_NE(outcome.err.find("\"fastest\""), std::string::npos) << outcome.err;
 }

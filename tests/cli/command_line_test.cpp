@@ -63,7 +63,8 @@ TEST(CommandLine, InvalidArgumentsAreRefusedAndNamed) {
         {{"run", "stack", "--steps", " 5"}, "--steps: found \" 5\""},
         {{"run", "stack", "--steps", "18446744073709551617"}, "--steps: found \"18446744073709551617\""},
         {{"run", "stack", "--steps", "1", "--steps", "2"}, "--steps: found several times"},
-        {{"run", "stack", "--steps", "1", "--seconds", "2"}, "--steps"},
+        {{"run", "stack", "--steps", "1", "--seconds", "2"},
+         "--seconds: found --steps with it; expected one of the two"},
         {{"run", "stack", "--seconds", "1e999"}, "--seconds: found \"1e999\"; expected a number above 0"},
         {{"run", "stack", "--seconds", "-5"}, "--seconds: found \"-5\""},
         {{"run", "stack", "--seconds", "0"}, "--seconds: found \"0\""},
@@ -72,7 +73,7 @@ TEST(CommandLine, InvalidArgumentsAreRefusedAndNamed) {
         {{"run", "stack", "--dt", "2"}, "--dt: found \"2\""},
         {{"run", "stack", "--threads", "1025"}, "--threads: found \"1025\""},
         {{"run", "stack", "--record", ""}, "--record: found \"\""},
-        {{"run", "stack", "--contacts"}, "--contacts requires --record"},
+        {{"run", "stack", "--contacts"}, "--contacts: found no --record; expected both"},
         {{"view", "x", "--port", "65536"}, "--port: found \"65536\""},
         {{"generate", "castle"}, "--output"},
         {{"distance"}, "PAIRS.json"},
@@ -83,6 +84,64 @@ TEST(CommandLine, InvalidArgumentsAreRefusedAndNamed) {
         expect_error_line(outcome, 2, one.words);
         EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
     }
+}
+
+TEST(CommandLine, OptionsWithoutEffectAreRefused) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_fase({"generate", "stack", "--count", "2", "-o", folder / "s.glb"}).code, 0);
+    ASSERT_EQ(run_fase({"generate", "uniform", "--count", "9", "--frames", "2", "-o", folder / "t.aabt"}).code, 0);
+    write_file(folder / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_file(folder / "m.wad", "PWAD");
+    write_file(folder / "sizes.txt", "3 4\n");
+    const std::string scene = folder / "s.glb", trace = folder / "t.aabt", wad = folder / "m.wad",
+                      mesh = folder / "m.obj", sizes = folder / "sizes.txt";
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{"run", scene, "--count", "9"}, "--count: found a scene file; expected a kind of 'fase generate' or a WAD"},
+        {{"run", scene, "--seed", "1"}, "--seed: found a scene file"},
+        {{"run", scene, "--map", "E1M1"}, "--map: found a scene that is not a WAD"},
+        {{"run", "stack", "--durable"}, "--durable: found no --record; expected both"},
+        {{"view", "x", "--port", "0", "--html", folder / "x.html"},
+         "--html: found --port with it; expected one of the two"},
+        {{"view", "x", "--port", "0", "--glb", folder / "x.glb"}, "--glb: found --port with it"},
+        {{"generate", "stack", "--frames", "3", "-o", folder / "x.glb"}, "--frames: found a scene"},
+        {{"pairs", trace, "--limit", "3"}, "--limit: found a single structure; expected --structure all"},
+        {{"atlas", "--rects", sizes, "--trim"}, "--trim: found --rects with it"},
+        {{"atlas", "--rects", sizes, "--array"}, "--array: found --rects with it"},
+        {{"atlas", "--rects", sizes, "--tries", "3", "--budget-ms", "3"}, "--budget-ms: found --tries with it"},
+        {{"level", wad, "--gl"}, "--gl: found no --output"},
+        {{"level", wad, "--extended"}, "--extended: found no --output"},
+        {{"level", wad, "--heights"}, "--heights: found no --pvs and no --point"},
+        {{"level", wad, "--rays", "3"}, "--rays: found no --pvs"},
+        {{"level", wad, "--lumps", "gl", "--weight", "1"}, "--weight: found --lumps with it"},
+        {{"level", wad, "--lumps", "gl", "--effort", "quick"}, "--effort: found --lumps with it"},
+        {{"level", mesh, "--stats"}, "--stats: found a mesh; expected a WAD"},
+    };
+    for (const auto& [arguments, words] : cases) expect_error_line(run_fase(arguments), 2, words);
+}
+
+TEST(CommandLine, OutputsWithAnotherExtensionAreRefusedBeforeAnyWork) {
+    const TemporaryFolder folder;
+    // Inputs that do not exist show that nothing is read before.
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{"run", "no.glb", "--record", "bad.mp4"},
+         "bad.mp4: found the extension \".mp4\"; expected .faserec for a recording"},
+        {{"run", "no.glb", "--record", "bad"}, "bad: found no extension; expected .faserec for a recording"},
+        {{"run", "no.glb", "--trace", "t.faserec"}, "found the extension \".faserec\"; expected .aabt for a trace"},
+        {{"view", "no.faserec", "--html", "a.htm"}, "found the extension \".htm\"; expected .html for a page"},
+        {{"view", "no.faserec", "--glb", "a.txt"}, "found the extension \".txt\"; expected .glb for an animation"},
+        {{"level", "no.wad", "--svg", "a.bmp"}, "found the extension \".bmp\"; expected .svg for a drawing"},
+        {{"level", "no.wad", "--png", "a.svg"}, "found the extension \".svg\"; expected .png for an image"},
+        {{"level", "no.wad", "-o", "a.lmp"}, "found the extension \".lmp\"; expected .wad for a WAD"},
+        {{"draw", "no.aabt", "-o", "a.png"}, "found the extension \".png\"; expected .svg for a drawing"},
+        {{"generate", "rain", "-o", "x.glb"}, "x.glb: found the extension \".glb\"; expected .aabt for a trace"},
+        {{"generate", "castle", "-o", "x.aabt"}, "found the extension \".aabt\"; expected .glb or .gltf for a scene"},
+        {{"atlas", "no.png", "-o", "x.png"}, "--output: found \"x.png\"; expected the NAME of NAME.png and NAME.json"},
+    };
+    for (const auto& [arguments, words] : cases) {
+        const std::string go = "cd '" + folder.path() + "' && exec \"$0\" \"$@\"";
+        expect_error_line(RunningFase::by_shell(go, arguments).wait(), 2, words);
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(CommandLine, AHugeArgumentIsTruncatedInTheMessage) {

@@ -116,7 +116,8 @@ TEST(Draw, RefusesInvalidOptions) {
     expect_refused({trace, "--plane", "zx", "-o", file}, 2, "--plane: found \"zx\"; expected xz, xy or yz");
     expect_refused({trace, "--frame", "3", "-o", file}, 2, "--frame: found 3; expected 0 to 2");
     expect_refused({trace, "--frame", "-1", "-o", file}, 2, "--frame");
-    expect_refused({trace, "-o", folder / "x.png"}, 2, "x.png: found another extension");
+    expect_refused({trace, "-o", folder / "x.png"}, 2,
+                   "x.png: found the extension \".png\"; expected .svg for a drawing");
     expect_refused({trace, "--structure", "all", "-o", file}, 2, "found no folder");
     expect_refused({trace, "-o", folder / "none/x.svg"}, 3, "found no folder");
     expect_refused({folder / "none.aabt", "-o", file}, 3, "none.aabt");

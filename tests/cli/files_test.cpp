@@ -3,6 +3,7 @@
 
 #include "fase/scene/generate.hpp"
 #include "tests/cli/fase_program.hpp"
+#include "tests/level/drawn_maps.hpp"
 
 namespace fase::cli {
 namespace {
@@ -35,7 +36,8 @@ TEST(Generate, RefusesUnknownKindsCountsAndExtensions) {
     const TemporaryFolder folder;
     expect_error_line(run_fase({"generate", "palace", "-o", folder / "p.glb"}), 2,
                       "KIND: found \"palace\"; expected one of castle");
-    expect_error_line(run_fase({"generate", "pile", "-o", folder / "p.obj"}), 2, "p.obj: found another extension");
+    expect_error_line(run_fase({"generate", "pile", "-o", folder / "p.obj"}), 2,
+                      "p.obj: found the extension \".obj\"; expected .glb or .gltf for a scene");
     expect_error_line(run_fase({"generate", "pile", "--count", "1000001", "-o", folder / "p.glb"}), 2, "--count");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
@@ -43,9 +45,9 @@ TEST(Generate, RefusesUnknownKindsCountsAndExtensions) {
 TEST(Info, DistinguishesScenesAndRecordings) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_fase({"generate", "stack", "--count", "4", "-o", folder / "s.glb"}).code, 0);
-    ASSERT_EQ(run_fase({"run", folder / "s.glb", "--steps", "9", "--record", folder / "r"}).code, 0);
+    ASSERT_EQ(run_fase({"run", folder / "s.glb", "--steps", "9", "--record", folder / "r.faserec"}).code, 0);
     const Outcome scene = run_fase({"info", folder / "s.glb", "--json"}),
-                  recording = run_fase({"info", folder / "r", "--json"});
+                  recording = run_fase({"info", folder / "r.faserec", "--json"});
     const auto scene_json = scene::parse_json(scene.out), recording_json = scene::parse_json(recording.out);
     ASSERT_TRUE(scene_json) << scene.out;
     ASSERT_TRUE(recording_json) << recording.out;
@@ -55,8 +57,82 @@ TEST(Info, DistinguishesScenesAndRecordings) {
     EXPECT_EQ(text_at(recording_json->root(), "kind"), "Fase recording");
     EXPECT_EQ(number_at(recording_json->root(), "frames"), 10);
     write_file(folder / "other", "something else");
-    expect_error_line(run_fase({"info", folder / "other"}), 2, "other");
+    expect_error_line(run_fase({"info", folder / "other"}), 2, "other: found another kind of file; expected a scene");
     expect_error_line(run_fase({"info", folder / "none"}), 3, "none");
+}
+
+TEST(Info, DescribesAWad) {
+    const TemporaryFolder folder;
+    level::Wad wad = level::wad_of(level::pool_map());
+    const level::Map second = [] {
+        level::Map map = level::grid_map(5, 4, 1);
+        map.name = "MAP02";
+        return map;
+    }();
+    for (const level::Lump& lump : level::wad_of(second).lumps) wad.lumps.push_back(lump);
+    const auto bytes = wad.to_bytes();
+    ASSERT_TRUE(bytes);
+    write_file(folder / "two.wad", {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    const Outcome outcome = run_fase({"info", folder / "two.wad", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto document = scene::parse_json(outcome.out);
+    ASSERT_TRUE(document) << outcome.out;
+    EXPECT_EQ(text_at(document->root(), "kind"), "WAD of additions (PWAD)");
+    EXPECT_EQ(number_at(document->root(), "lumps"), static_cast<double>(wad.lumps.size()));
+    EXPECT_EQ(number_at(document->root(), "map_count"), 2);
+    EXPECT_NE(outcome.out.find("[\"MAP01\", \"MAP02\"]"), std::string::npos) << outcome.out;
+    expect_keys(document->root(), {"lump_bytes", "warnings"});
+    write_file(folder / "cut.wad", "IWAD");
+    expect_error_line(run_fase({"info", folder / "cut.wad"}), 2,
+                      "cut.wad: byte 0: found 4 bytes; expected a WAD header");
+}
+
+TEST(FileKinds, EachCommandNamesTheKindOfAFileThatItCannotRead) {
+    const TemporaryFolder folder;
+    struct Sample {
+        std::string file, name;
+    };
+    const std::vector<Sample> samples{
+        {"x.wad", "a WAD file"},   {"x.png", "a PNG image"},    {"x.rec", "a recording"},   {"x.aabt", "a trace"},
+        {"x.snap", "a snapshot"},  {"x.zst", "a zstd archive"}, {"x.gz", "a gzip archive"}, {"x.none", "an empty file"},
+        {"x.glb", "a glTF scene"}, {"x.json", "a JSON file"}};
+    const std::string rest(200, '\0');
+    write_file(folder / "x.wad", "IWAD" + rest);
+    write_file(folder / "x.png", "\x89PNG\r\n\x1a\n" + rest);
+    write_file(folder / "x.rec", "FASEREC\n" + rest);
+    write_file(folder / "x.aabt", "AABT" + rest);
+    write_file(folder / "x.snap", "FASESNAP" + rest);
+    write_file(folder / "x.zst", "\x28\xb5\x2f\xfd" + rest);
+    write_file(folder / "x.gz", "\x1f\x8b" + rest);
+    write_file(folder / "x.none", "");
+    write_file(folder / "x.glb", "glTF" + rest);
+    write_file(folder / "x.json", "{}");
+    const auto expect = [&](const std::vector<std::string>& command, const std::string& readable,
+                            const std::string& expected) {
+        for (const Sample& sample : samples) {
+            if (readable.find(sample.file) != std::string::npos) continue;
+            std::vector<std::string> arguments = command;
+            arguments.insert(arguments.begin() + 1, folder / sample.file);
+            expect_error_line(run_fase(arguments), 2,
+                              sample.file + ": found " + sample.name + (sample.file == "x.snap" ? " of a world" : "") +
+                                  "; expected " + expected);
+        }
+    };
+    expect({"info"}, "x.wad x.rec x.aabt x.glb x.json", "a scene (.gltf, .glb), a recording, a trace or a WAD");
+    expect({"run"}, "x.wad x.glb x.json", "a .gltf, .glb or .wad file");
+    expect({"query"}, "x.wad x.glb x.json x.aabt", "a .gltf, .glb, .wad or .aabt file");
+    expect({"level"}, "x.wad x.glb", "a WAD file");
+    expect({"view"}, "x.rec", "a recording");
+    expect({"pairs"}, "x.aabt", "a trace");
+    expect({"draw", "-o", folder / "x.svg"}, "x.aabt", "a trace");
+    expect({"distance"}, "x.json", "pairs of shapes as JSON");
+    expect({"atlas", "-o", folder / "sheet"}, "x.png", "a PNG image");
+    for (const Sample& sample : samples) {
+        if (sample.file == "x.none" || sample.file == "x.json") continue;
+        std::filesystem::copy_file(folder / sample.file, folder / (sample.file + ".obj"));
+        expect_error_line(run_fase({"level", folder / (sample.file + ".obj")}), 2, "expected a mesh as OBJ text");
+        expect_error_line(run_fase({"atlas", "--rects", folder / sample.file}), 2, "expected a text with a width");
+    }
 }
 
 /// Two unit spheres 1 m apart, with a published distance to compare.
@@ -98,6 +174,33 @@ TEST(Distance, AWrongDistanceGivesExitCode1) {
     write_file(folder / "pairs.json", "{\"cases\": 3}");
     expect_error_line(run_fase({"distance", folder / "pairs.json"}), 2, "pairs.json");
     expect_error_line(run_fase({"distance", folder / "none.json"}), 3, "none.json");
+}
+
+/// The first block of code of that language in a page.
+std::string code_in(const std::string& page, const std::string& language) {
+    const std::string fence = "```" + language + "\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    return page.substr(begin, page.find("```", begin) - begin);
+}
+
+TEST(Distance, TheDocumentedExampleGivesTheDocumentedOutput) {
+    const TemporaryFolder folder;
+    const std::string page = read_file(FASE_DATA "/../docs/distance.md");
+    write_file(folder / "pairs.json", code_in(page, "json"));
+    const Outcome outcome = run_fase({"distance", folder / "pairs.json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, code_in(page, "text"));
+}
+
+TEST(Distance, TheExampleOfTheHelpIsCorrect) {
+    const TemporaryFolder folder;
+    const std::string help = run_fase({"distance", "--help"}).out;
+    const std::size_t begin = help.find("{\"cases\""), end = help.find("]}\n", begin);
+    ASSERT_NE(end, std::string::npos) << help;
+    write_file(folder / "pairs.json", help.substr(begin, end + 2 - begin));
+    const Outcome outcome = run_fase({"distance", folder / "pairs.json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("1 of 1 within tolerance"), std::string::npos) << outcome.out;
 }
 
 TEST(Distance, AllPublishedPairsAreCorrect) {

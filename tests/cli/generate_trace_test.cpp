@@ -33,8 +33,11 @@ TEST(GenerateTrace, TheExtensionSelectsSceneOrTrace) {
     EXPECT_NE(run_fase({"info", folder / "p.glb"}).out.find("glTF scene"), std::string::npos);
     EXPECT_NE(run_fase({"info", folder / "p.aabt"}).out.find("box trace"), std::string::npos);
     expect_error_line(run_fase({"generate", "castle", "-o", folder / "c.aabt"}), 2,
-                      "KIND: found \"castle\"; expected one of uniform");
-    expect_error_line(run_fase({"generate", "rain", "-o", folder / "r.glb"}), 2, "KIND: found \"rain\"");
+                      "c.aabt: found the extension \".aabt\"; expected .glb or .gltf for a scene");
+    expect_error_line(run_fase({"generate", "rain", "-o", folder / "r.glb"}), 2,
+                      "r.glb: found the extension \".glb\"; expected .aabt for a trace");
+    expect_error_line(run_fase({"generate", "pile", "-o", folder / "p"}), 2,
+                      "p: found no extension; expected .glb or .gltf for a scene, .aabt for a trace");
     expect_error_line(run_fase({"generate", "pile", "--frames", "5", "-o", folder / "q.glb"}), 2, "--frames");
     expect_error_line(run_fase({"generate", "rain", "-o", folder / "none/r.aabt"}), 3, "found no folder");
     EXPECT_FALSE(std::filesystem::exists(folder / "c.aabt"));
@@ -95,7 +98,7 @@ TEST(RunTrace, DoesNotChangeTheHashAndWorksWithARecording) {
     EXPECT_EQ(hash({}), hash({"--trace", folder / "t.aabt", "--record", folder / "r.faserec"}));
     EXPECT_TRUE(std::filesystem::exists(folder / "r.faserec"));
     EXPECT_TRUE(std::filesystem::exists(folder / "t.aabt"));
-    expect_error_line(run_fase({"run", "stack", "--trace", folder / "x", "--record", folder / "x"}), 3, "expected two");
+    expect_error_line(run_fase({"run", "stack", "--trace", "/dev/null", "--record", "/dev/null"}), 3, "expected two");
 }
 
 TEST(RunTrace, AnUnwritablePathIsRefusedBeforeTheRun) {

@@ -85,12 +85,12 @@ TEST(Recording, AReadOnlyFileOrFolderIsRefused) {
     const auto run = [&](const std::string& out) {
         return RunningFase::by_shell(as_regular_user, {"run", "stack", "--steps", "1", "--record", out}).wait();
     };
-    if (run(folder / "first").code != 0) GTEST_SKIP() << "skipped: cannot drop the rights of the superuser";
+    if (run(folder / "first.faserec").code != 0) GTEST_SKIP() << "skipped: cannot drop the rights of the superuser";
     write_file(file, "old");
     ::chmod(file.c_str(), 0400);
     expect_error_line(run(file), 3, "found a read-only file");
     ::chmod(folder.path().c_str(), 0500);
-    expect_error_line(run(folder / "new"), 3, "read-only folder");
+    expect_error_line(run(folder / "new.faserec"), 3, "read-only folder");
     ::chmod(folder.path().c_str(), 0700);
     EXPECT_EQ(read_file(file), "old");
 }
