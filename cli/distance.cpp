@@ -276,7 +276,19 @@ void add_distance(Command& program, CommandRegistry& registry) {
     Command command = program.add_command("distance", "Compare distances of pairs of shapes with published values");
     command.add_text("PAIRS.json", "Pairs with their expected distances", distance.file).required();
     add_json(command, distance.json);
-    command.set_footer("\nExample:\n  fase distance pairs.json\n\nExit code 1: a distance is wrong.");
+    command.set_footer(
+        "\nExample:\n  fase distance pairs.json\n"
+        "\nThe file, with the distance of two unit spheres whose centres are 3 m apart:\n"
+        "  {\"cases\": [{\"id\": \"apart\",\n"
+        "    \"a\": {\"type\": \"sphere\", \"size\": [1], \"pos\": [0, 0, 0], \"rot\": [1, 0, 0, 0, 1, 0, 0, 0, 1]},\n"
+        "    \"b\": {\"type\": \"sphere\", \"size\": [1], \"pos\": [3, 0, 0], \"rot\": [1, 0, 0, 0, 1, 0, 0, 0, 1]},\n"
+        "    \"distance\": 1, \"tol\": 1e-6}]}\n"
+        "type and size: box, 3 half sizes; sphere, radius; capsule and cylinder, radius and half length along local "
+        "z.\n"
+        "pos in metres; rot: a rotation matrix by rows, local to world. Expected, each optional: distance with tol\n"
+        "(negative: penetration), sign of the distance (-1, 0, 1), distance_computed_by_us (within 1e-6 m). A case\n"
+        "without any of them, or with another shape, is skipped. docs/distance.md explains the format.\n"
+        "\nExit code 1: a distance is wrong.");
     registry.on(command, [&distance] { return run_distance(distance); });
 }
 
