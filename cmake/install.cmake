@@ -59,8 +59,15 @@ endif()
 if(TARGET fase_cli)
   install(TARGETS fase_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT collision)
+
+# The documents, with all files that they link to, at the same places relative to each other. tests/install checks the links.
+foreach(file IN ITEMS LICENSE README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md fase/record/trace.hpp fase/world/world.hpp)
+  cmake_path(GET file PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT collision)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        COMPONENT collision)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench COMPONENT collision)
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fase-config.cmake.in ${PROJECT_BINARY_DIR}/fase-config.cmake
                               INSTALL_DESTINATION ${package_folder})

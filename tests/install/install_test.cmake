@@ -1,5 +1,5 @@
 # Installs into a fresh folder, then builds and runs an outside program by find_package and by pkg-config.
-# Variables: BUILD (Fase's build folder), SOURCE (this folder), GENERATOR, COMPILER, FLAGS (sanitizers).
+# Variables: BUILD (Fase's build folder), SOURCE (this folder), GENERATOR, COMPILER, FLAGS (sanitizers), PYTHON.
 cmake_minimum_required(VERSION 3.25)
 
 set(work ${BUILD}/install_test)
@@ -15,6 +15,9 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+
+# Links in installed documents lead to installed files.
+run(${PYTHON} ${SOURCE}/../../tools/check_links.py ${prefix})
 
 # Installed headers stand alone: they need no library that Fase is built on and no header that is not installed.
 file(GLOB_RECURSE headers ${prefix}/include/fase/*.hpp)
