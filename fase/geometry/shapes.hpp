@@ -48,4 +48,10 @@ template <class F> void for_each_shape(F&& f) { for_each_shape(f, AllShapes{}); 
     return std::visit([]<class S>(const S&) { return S::name; }, shape);
 }
 
+/// Whether the surface is curved. Contact points keep their place below a curved body when it rolls; those of a
+/// polyhedron turn with it.
+[[nodiscard]] inline bool is_curved(const Shape& shape) {
+    return std::visit([]<class S>(const S&) { return S::is_curved; }, shape);
+}
+
 }  // namespace fase

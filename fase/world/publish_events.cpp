@@ -23,13 +23,9 @@ bool touches(const WorldState& state, const Contact& c) {
     return c.pushes || c.nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
 }
 
-/// Returns the point with the largest impulse, in world space, half-way between the bodies.
-Vec3d deepest_point(const WorldState& state, const Contact& c) {
-    int deepest = 0;
-    for (int i = 1; i < c.count; ++i)
-        if (c.impulse[i] > c.impulse[deepest]) deepest = i;
-    const Vec3 offset = c.offset_a + c.tangent * c.x[deepest] + cross(c.normal, c.tangent) * c.y[deepest];
-    return state.bodies.motion[c.body_a].position + to_double(offset);
+/// Returns where the surfaces met, in world space.
+Vec3d hit_point(const WorldState& state, const Contact& c) {
+    return state.bodies.motion[c.body_a].position + to_double(c.hit_offset_a);
 }
 
 template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
@@ -55,11 +51,11 @@ void publish_events(WorldState& state) {
             c.touching = now;
         }
         if (c.pushes && c.approach > state.settings.restitution_threshold) {
-            HitEvent hit{{}, {}, deepest_point(state, c), c.normal, c.approach, 0};
+            HitEvent hit{{}, {}, hit_point(state, c), c.normal, c.approach, 0};
             const ContactEvent ids = ids_of(state, c);
             hit.a = ids.a;
             hit.b = ids.b;
-            for (int i = 0; i < c.count; ++i) hit.impulse += c.impulse[i];
+            for (int i = 0; i < c.count; ++i) hit.impulse += c.total_impulse[i];
             events.hits.push_back(hit);
         }
         c.pushes = false;

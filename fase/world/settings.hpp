@@ -17,14 +17,14 @@ struct Settings {
 
     // Contacts. Soft contacts are mass-independent springs. Source: Catto 2011, Soft constraints; Catto 2024, Solver2D
     // ("soft step").
-    float contact_frequency = 45;        ///< Hz; higher is harder; clamped to a quarter of the sub-step rate
+    float contact_frequency = 60;        ///< Hz; higher is harder; clamped to an eighth of the sub-step rate
     float contact_damping_ratio = 10;    ///< 1 is critical; above 1, overlap is resolved slowly without bounce
     float push_out_speed = 3;            ///< m/s; the largest speed at which overlap is resolved (length)
     float restitution_threshold = 0.1f;  ///< m/s; a slower approach does not bounce (length)
     float speculative_distance = 0.02f;  ///< m; contacts are created at this distance before the shapes touch (length)
     float linear_slop = 0.005f;          ///< m; shapes closer than this count as touching (length)
-    /// m; a manifold of several points is reused while the relative motion of its bodies is smaller (length). 0
-    /// computes every manifold in every step.
+    /// m; a manifold of three or four points is reused while each point moved less than this between its bodies
+    /// (length). 0 computes every manifold in every step.
     float contact_reuse_distance = 0.01f;
 
     // The broad phase.

@@ -134,9 +134,10 @@ template <class A> void describe(A& a, Collider& c) {
 }
 template <class A> void describe(A& a, Contact& c) {
     all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.generation_a, c.generation_b, c.count, c.sensor,
-        c.touching, c.frozen, c.pushes, c.friction, c.restitution, c.normal, c.tangent, c.offset_a, c.offset_b, c.x,
-        c.y, c.separation, c.impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.feature,
-        c.rotation_a, c.rotation_b, c.b_from_a, c.b_in_a);
+        c.touching, c.reusable, c.pushes, c.a_rolls, c.b_rolls, c.friction, c.restitution, c.position_a, c.position_b,
+        c.rotation_a, c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b,
+        c.first_separation, c.normal, c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse,
+        c.total_impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
 }
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
@@ -184,10 +185,10 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
 
 /// The one list of all state of a world that is hashed and saved.
 template <class A> void describe(A& a, WorldState& s) {
-    all(a, s.settings, s.steps, s.time, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces, s.collider_ids,
-        s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep.bodies, s.active.pairs,
-        s.active.values, s.resting.pairs, s.resting.values, s.contacts, s.free_contacts, s.edited_colliders,
-        s.bodies_to_wake, s.removed_any, s.query_all_awake);
+    all(a, s.settings, s.steps, s.time, s.last_sub_step, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces,
+        s.collider_ids, s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep.bodies,
+        s.active.pairs, s.active.values, s.resting.pairs, s.resting.values, s.contacts, s.free_contacts,
+        s.edited_colliders, s.bodies_to_wake, s.removed_any, s.query_all_awake);
     std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {

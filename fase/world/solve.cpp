@@ -8,10 +8,13 @@ using dynamics::BodyTraits;
 
 namespace {
 
-dynamics::SolverSettings solver_settings(const Settings& settings, float seconds) {
+dynamics::SolverSettings solver_settings(const WorldState& state, float seconds) {
+    const Settings& settings = state.settings;
+    const float sub_step = seconds / static_cast<float>(settings.sub_steps);
     return {settings.gravity,
             seconds,
             settings.sub_steps,
+            state.last_sub_step > 0 ? sub_step / state.last_sub_step : 1,
             settings.contact_frequency,
             settings.contact_damping_ratio,
             settings.push_out_speed,
@@ -78,11 +81,12 @@ void solve(WorldState& state, float seconds) {
         };
         return !moves(c.body_a) && !moves(c.body_b);
     });
-    const dynamics::SolverSettings settings = solver_settings(state.settings, seconds);
+    const dynamics::SolverSettings settings = solver_settings(state, seconds);
     state.solver.load_bodies(state.bodies, state.awake, settings, *state.tasks);
     state.solver.load_contacts(state.contacts, state.touching, state.bodies, settings, *state.tasks);
     state.solver.run(settings, *state.tasks);
-    state.solver.store_contacts(state.contacts, *state.tasks);
+    state.solver.store_contacts(state.contacts, state.bodies, settings, *state.tasks);
+    state.last_sub_step = seconds / static_cast<float>(state.settings.sub_steps);
     const dynamics::SolverCounts counts = state.solver.counts();
     state.report.colours = counts.colours;
     state.report.overflow = counts.overflow;
@@ -100,7 +104,7 @@ void finish(WorldState& state, float seconds) {
             const dynamics::SolverBody& row = state.solver.body(i);
             BodyMotion next = state.bodies.motion[body];
             next.position += Vec3d{row.moved[0], row.moved[1], row.moved[2]};
-            const Quat turned{row.turned[0], row.turned[1], row.turned[2], row.turned[3]};
+            const Quat turned = state.solver.motion(i).turned;
             if (!(turned == Quat{})) next.rotation = normalized(turned * next.rotation);
             next.linear_velocity = {row.velocity[0], row.velocity[1], row.velocity[2]};
             next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};

@@ -157,7 +157,7 @@ void update_list(WorldState& state, pairs::PairList& list, std::span<const Pair>
         [&](std::size_t i) {
             if (has_ended(state, list.pairs[i], list.values[i])) return true;
             if ((state.changes[list.pairs[i].a] | state.changes[list.pairs[i].b]) & edited)
-                state.contacts[list.values[i]].frozen = false;
+                state.contacts[list.values[i]].reusable = false;
             return false;
         },
         [&](std::uint32_t contact) { end_contact(state, contact); },

@@ -157,7 +157,7 @@ void World::read_contacts(std::vector<ContactState>& out) const {
                 contact.points[i] = state_->bodies.motion[c.body_a].position +
                                     to_double(c.offset_a + c.tangent * c.x[i] + second * c.y[i]);
                 contact.separations[i] = c.separation[i];
-                contact.impulses[i] = c.impulse[i];
+                contact.impulses[i] = c.total_impulse[i];
                 contact.features[i] = c.feature[i];
             }
             out.push_back(contact);

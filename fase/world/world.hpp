@@ -23,9 +23,9 @@ struct ContactState {
     ColliderId a, b;
     Vec3 normal;  ///< world, unit, from a to b
     int count = 0;
-    std::array<Vec3d, 4> points;         ///< world
-    std::array<float, 4> separations{};  ///< metres; below 0: overlap
-    std::array<float, 4> impulses{};     ///< N s along the normal in the last sub-step
+    std::array<Vec3d, 4> points;         ///< world, after the step
+    std::array<float, 4> separations{};  ///< metres, after the step; below 0: overlap
+    std::array<float, 4> impulses{};     ///< N s along the normal, over the whole last step
     std::array<std::uint32_t, 4> features{};
     bool sensor = false;  ///< one collider is a sensor: events only, no forces
 };

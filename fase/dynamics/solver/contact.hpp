@@ -1,6 +1,6 @@
 #pragma once
-/// A contact exists while the fat boxes of its two colliders overlap. It stores the manifold in world axes and the
-/// impulses for warm starting.
+/// A contact exists while the fat boxes of its two colliders overlap. It stores the manifold, the poses that it was
+/// computed from, so that a manifold that is reused moves with its bodies, and the impulses for warm starting.
 #include <cstdint>
 
 #include "fase/math/quat.hpp"
@@ -8,8 +8,6 @@
 namespace fase::dynamics {
 
 /// The contact of one pair of colliders. "a" is the collider with the smaller index; the normal points from a to b.
-/// Offsets are from the bodies' centres of mass to the manifold's centre, in world axes, at the step in which the
-/// manifold was computed.
 struct Contact {
     std::uint32_t collider_a = 0, collider_b = 0;
     std::uint32_t body_a = 0, body_b = 0;
@@ -17,25 +15,34 @@ struct Contact {
     std::uint8_t count = 0;                            ///< number of points, 0..4
     bool sensor = false;                               ///< either collider is a sensor: no forces
     bool touching = false;                             ///< as reported to the user by events
-    bool frozen = false;                               ///< the manifold may be reused in later steps
+    bool reusable = false;                             ///< the manifold may be reused in later steps
     bool pushes = false;                               ///< an impulse acted in the last step
-    bool unused[3] = {};
+    bool a_rolls = false, b_rolls = false;             ///< a curved shape: contact points do not turn with the body
+    bool unused = false;
     float friction = 0;
     float restitution = 0;
+
+    // When the manifold was computed: poses of the bodies, and the manifold in world axes.
+    Vec3d position_a, position_b;  ///< of the centres of mass
+    Quat rotation_a, rotation_b;
+    Vec3 first_normal, first_tangent, first_offset_a, first_offset_b;
+    float first_separation[4] = {};
+
+    // Now: at the beginning of the last step until the solver ends, then at the end of the step.
     Vec3 normal;
-    Vec3 tangent;  ///< unit; the second tangent is cross(normal, tangent)
-    Vec3 offset_a, offset_b;
+    Vec3 tangent;             ///< unit; the second tangent is cross(normal, tangent)
+    Vec3 offset_a, offset_b;  ///< from the bodies' centres of mass to the centre of the manifold
+    float separation[4] = {};
+
     float x[4] = {}, y[4] = {};  ///< the points in the tangent frame around the centre
-    float separation[4] = {};    ///< metres, when the manifold was computed
-    float impulse[4] = {};       ///< N s along the normal, of the last sub-step
+    std::uint32_t feature[4] = {};
+    float impulse[4] = {};        ///< N s along the normal, of the last sub-step
+    float total_impulse[4] = {};  ///< N s along the normal, of the whole last step
     float friction_impulse[2] = {};
     float twist_impulse = 0;
-    float nearest = 0;   ///< smallest separation, at the beginning of the last step in which it was solved or computed
-    float approach = 0;  ///< largest approach speed of the points with impulse, m/s, before the last solve
-    std::uint32_t feature[4] = {};
-    Quat rotation_a, rotation_b;  ///< of the bodies when the manifold was computed
-    Vec3 b_from_a;                ///< centre of b minus centre of a, world axes, when the manifold was computed
-    Vec3 b_in_a;                  ///< the same in a's axes
+    float nearest = 0;   ///< the smallest separation
+    float approach = 0;  ///< the largest approach speed of the points that were hit in the last step, m/s
+    Vec3 hit_offset_a;   ///< where it was hit: offset from the centre of mass of a at the end of the step
 };
 
 }  // namespace fase::dynamics

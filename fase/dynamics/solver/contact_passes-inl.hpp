@@ -28,9 +28,14 @@ template <class V> FASE_INLINE Vec<V> operator*(const Symmetric<V>& m, Vec<V> v)
 template <class V> FASE_INLINE Vec<V> load3(const float (*rows)[8], int lane) {
     return {V::load(rows[0] + lane), V::load(rows[1] + lane), V::load(rows[2] + lane)};
 }
-/// Returns R⁻¹ n - n for the rotation R = (q, w).
-template <class V> FASE_INLINE Vec<V> inverse_rotation_delta(Vec<V> q, V w, Vec<V> n) {
-    return cross(q, cross(q, n) - n * w) * V::set(2.0f);
+/// Returns v with its components multiplied by those of m.
+template <class V> FASE_INLINE Vec<V> scaled(Vec<V> m, Vec<V> v) { return {m.x * v.x, m.y * v.y, m.z * v.z}; }
+/// Returns R⁻¹ n - n for the rotation of a body about `rotated` (radians). With `turns` = 0 only the part that is
+/// linear in the angle: for points that keep their place on a rolling body. Source of the rational form: Cayley 1846.
+template <class V> FASE_INLINE Vec<V> inverse_rotation_delta(Vec<V> rotated, V turns, Vec<V> n) {
+    const V half = V::set(0.5f), one = V::set(1.0f), two = V::set(2.0f);
+    const Vec<V> t = rotated * half, tn = cross(t, n);
+    return (cross(t, tn) * turns - tn) * (two / (one + turns * dot(t, t)));
 }
 
 /// The contact frame of each lane: the unit normal, two unit tangents, and the offsets from the two centres of mass to
@@ -44,27 +49,29 @@ template <class V> struct Frame {
     }
 };
 
-/// Inverse inertia tensors (world axes) and inverse masses of the two bodies of each lane.
+/// Inverse inertia tensors (world axes) and inverse masses along the world axes of the two bodies of each lane.
 template <class V> struct Inertia {
     Symmetric<V> a, b;
-    V mass_a, mass_b;
+    Vec<V> mass_a, mass_b;
 
-    FASE_INLINE void gather(const SolverMass* masses, const std::uint32_t* rows_a, const std::uint32_t* rows_b) {
+    /// `z_a` and `z_b` are the inverse masses along z, which the rows of the velocities contain.
+    FASE_INLINE void gather(const SolverMass* masses, const std::uint32_t* rows_a, const std::uint32_t* rows_b, V z_a,
+                            V z_b) {
         const float* base = reinterpret_cast<const float*>(masses);
         V row[8];
         V::gather8(base, rows_a, 8, row);
         a = {row[0], row[1], row[2], row[3], row[4], row[5]};
-        mass_a = row[6];
+        mass_a = {row[6], row[7], z_a};
         V::gather8(base, rows_b, 8, row);
         b = {row[0], row[1], row[2], row[3], row[4], row[5]};
-        mass_b = row[6];
+        mass_b = {row[6], row[7], z_b};
     }
 };
 
 /// Velocities of the two bodies of each lane.
 template <class V> struct Velocities {
     Vec<V> va, wa, vb, wb;
-    V mass_a, mass_b, rest_a, rest_b;  // the rows also contain the inverse masses and unused floats
+    V mass_a, mass_b, rest_a, rest_b;  // the rows also contain the inverse mass along z and an unused float
 
     FASE_INLINE void gather(const SolverBody* bodies, const std::uint32_t* a, const std::uint32_t* b) {
         V row[8];
@@ -95,10 +102,10 @@ template <class V> struct Velocities {
     template <bool one_sided>
     FASE_INLINE void apply(Vec<V> p, Vec<V> turn, const Frame<V>& f, const Inertia<V>& inertia) {
         if constexpr (!one_sided) {
-            va = va - p * mass_a;
+            va = va - scaled(inertia.mass_a, p);
             wa = wa - inertia.a * (cross(f.ca, p) + turn);
         }
-        vb = vb + p * mass_b;
+        vb = vb + scaled(inertia.mass_b, p);
         wb = wb + inertia.b * (cross(f.cb, p) + turn);
     }
     /// Returns the velocity of b relative to a at the centre of the manifold.
@@ -120,11 +127,17 @@ template <class V> FASE_INLINE Affine<V> normal_velocity(const Frame<V>& f, cons
     return {dot(f.n, relative), V::set(0.0f) - dot(f.t2, spin), dot(f.t1, spin)};
 }
 
-/// Returns the change of the separation when the centre of b moves by `moved` relative to a, and the bodies rotate by
-/// (qa, wa) and (qb, wb).
+/// Returns the change of the separation since the beginning of the step, from the motion of the bodies. The tangent
+/// frame turns with the points of b, and at the same time with those of a.
 template <class V>
-FASE_INLINE Affine<V> separation_change(const Frame<V>& f, Vec<V> moved, Vec<V> qa, V wa, Vec<V> qb, V wb) {
-    const Vec<V> ea = inverse_rotation_delta(qa, wa, f.n), eb = inverse_rotation_delta(qb, wb, f.n), e = eb - ea;
+FASE_INLINE Affine<V> separation_change(const ContactBlock& k, int s, const Frame<V>& f, const SolverBody* bodies) {
+    V a[8], b[8];
+    const float* motions = reinterpret_cast<const float*>(bodies) + 8;
+    V::gather8(motions, k.a + s, 16, a);
+    V::gather8(motions, k.b + s, 16, b);
+    const Vec<V> moved = Vec<V>{b[0], b[1], b[2]} - Vec<V>{a[0], a[1], a[2]};
+    const Vec<V> ea = inverse_rotation_delta(Vec<V>{a[4], a[5], a[6]}, V::load(k.turns_a + s), f.n);
+    const Vec<V> eb = inverse_rotation_delta(Vec<V>{b[4], b[5], b[6]}, V::load(k.turns_b + s), f.n), e = eb - ea;
     return {dot(f.n, moved) + dot(eb, f.cb) - dot(ea, f.ca), dot(e, f.t1), dot(e, f.t2)};
 }
 
@@ -149,19 +162,23 @@ template <class V> struct Coupling {
 /// Returns the coupling of the normal impulses; `sum` is the sum of the inverse inertia tensors, `mass` that of the
 /// inverse masses.
 template <class V>
-FASE_INLINE Coupling<V> normal_coupling(const Frame<V>& f, const Inertia<V>& inertia, const Symmetric<V>& sum, V mass) {
+FASE_INLINE Coupling<V> normal_coupling(const Frame<V>& f, const Inertia<V>& inertia, const Symmetric<V>& sum,
+                                        Vec<V> mass) {
     const V zero = V::set(0.0f);
     const Vec<V> ja = cross(f.ca, f.n), jb = cross(f.cb, f.n);
     const Vec<V> ija = inertia.a * ja, ijb = inertia.b * jb, ij = ija + ijb;
     const Vec<V> sum_t1 = sum * f.t1, sum_t2 = sum * f.t2;
-    return {mass + dot(ja, ija) + dot(jb, ijb), zero - dot(f.t2, ij), dot(f.t1, ij), dot(f.t2, sum_t2),
-            zero - dot(f.t1, sum_t2),           dot(f.t1, sum_t1)};
+    return {dot(f.n, scaled(mass, f.n)) + dot(ja, ija) + dot(jb, ijb),
+            zero - dot(f.t2, ij),
+            dot(f.t1, ij),
+            dot(f.t2, sum_t2),
+            zero - dot(f.t1, sum_t2),
+            dot(f.t1, sum_t1)};
 }
 
-/// Stores effective mass, separation, approach speed and lever arm of each point.
+/// Stores effective mass, approach speed and lever arm of each point.
 template <class V>
-FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, const Affine<V>& separation,
-                                const Affine<V>& velocity) {
+FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, const Affine<V>& velocity) {
     const V zero = V::set(0.0f), one = V::set(1.0f);
     for (int i = 0; i < 4; ++i) {
         const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s), present = V::load(k.point_mass[i] + s);
@@ -169,7 +186,6 @@ FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, co
         const V mass_here = m.m00 + two_x * m.m01 + two_y * m.m02 + x * x * m.m11 + y * y * m.m22 + two_x * y * m.m12;
         const V inverse = select_greater(mass_here, zero, one / mass_here, zero);
         select_greater(present, zero, inverse, zero).store(k.point_mass[i] + s);
-        separation.add_to(V::load(k.separation[i] + s), x, y).store(k.separation[i] + s);
         (zero - velocity.at(x, y)).store(k.approach[i] + s);
         sqrt_of(x * x + y * y).store(k.lever[i] + s);
     }
@@ -179,12 +195,13 @@ FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, co
 /// normal_coupling().
 template <class V>
 FASE_INLINE void prepare_friction(ContactBlock& k, int s, const Frame<V>& f, const Inertia<V>& inertia,
-                                  const Symmetric<V>& sum, V mass) {
+                                  const Symmetric<V>& sum, Vec<V> mass) {
     const V zero = V::set(0.0f), one = V::set(1.0f);
     const Vec<V> a1 = cross(f.ca, f.t1), a2 = cross(f.ca, f.t2), b1 = cross(f.cb, f.t1), b2 = cross(f.cb, f.t2);
     const Vec<V> ia1 = inertia.a * a1, ia2 = inertia.a * a2, ib1 = inertia.b * b1, ib2 = inertia.b * b2;
-    const V k11 = mass + dot(a1, ia1) + dot(b1, ib1), k22 = mass + dot(a2, ia2) + dot(b2, ib2);
-    const V k12 = dot(a1, ia2) + dot(b1, ib2), det = k11 * k22 - k12 * k12;
+    const Vec<V> m1 = scaled(mass, f.t1), m2 = scaled(mass, f.t2);
+    const V k11 = dot(f.t1, m1) + dot(a1, ia1) + dot(b1, ib1), k22 = dot(f.t2, m2) + dot(a2, ia2) + dot(b2, ib2);
+    const V k12 = dot(f.t1, m2) + dot(a1, ia2) + dot(b1, ib2), det = k11 * k22 - k12 * k12;
     const V inverse = select_greater(det, zero, one / det, zero);
     (k22 * inverse).store(k.friction_mass[0] + s);
     (zero - k12 * inverse).store(k.friction_mass[1] + s);
@@ -198,30 +215,45 @@ FASE_INLINE void prepare_friction(ContactBlock& k, int s, const Frame<V>& f, con
 
 /// Computes all values of the block that depend on the manifold and on the bodies at the beginning of the step.
 template <class V> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
-    Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s);
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
     const Symmetric<V>&ia = inertia.a, &ib = inertia.b;
     const Symmetric<V> sum{ia.xx + ib.xx, ia.xy + ib.xy, ia.xz + ib.xz, ia.yy + ib.yy, ia.yz + ib.yz, ia.zz + ib.zz};
-    const V mass = inertia.mass_a + inertia.mass_b;
+    const Vec<V> mass = inertia.mass_a + inertia.mass_b;
     const Coupling<V> coupling = normal_coupling(f, inertia, sum, mass);
     coupling.store(k, s);
-    // The manifold may be older than the step: its separations have changed since.
-    const Affine<V> separation =
-        separation_change(f, load3<V>(k.shift, s), load3<V>(k.turn_a, s), V::load(k.turn_a[3] + s),
-                          load3<V>(k.turn_b, s), V::load(k.turn_b[3] + s));
-    prepare_points(k, s, coupling, separation, normal_velocity(f, u));
+    prepare_points(k, s, coupling, normal_velocity(f, u));
     prepare_friction(k, s, f, inertia, sum, mass);
+}
+
+/// Marks the lanes in which a point approaches faster than `impact_speed` and would touch within the sub-step: where
+/// the contact passes would stop it.
+template <class V> void find_impact_lanes(ContactBlock& k, int s, const PassInput& in) {
+    const V zero = V::set(0.0f), one = V::set(1.0f), h = V::set(in.sub_step);
+    Velocities<V> u;
+    u.gather(in.bodies, k.a + s, k.b + s);
+    const Frame<V> f = Frame<V>::load(k, s);
+    const Affine<V> velocity = normal_velocity(f, u), change = separation_change(k, s, f, in.bodies);
+    const V slowest = V::set(in.impact_speed);
+    V found = zero;
+    for (int i = 0; i < 4; ++i) {
+        const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s);
+        const V speed = zero - velocity.at(x, y), separation = change.add_to(V::load(k.separation[i] + s), x, y);
+        const V hits = select_greater(speed * h, separation, one, zero);
+        found = max_of(found, select_greater(speed, slowest, hits, zero));
+    }
+    select_greater(V::load(k.restitution + s), zero, found, zero).store(k.impact + s);
 }
 
 /// Applies the impulses of the last step.
 template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
-    Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s);
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
     V sum = V::set(0.0f), sx = sum, sy = sum;
     for (int i = 0; i < 4; ++i) {
@@ -236,29 +268,23 @@ template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s,
     u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
 }
 
-/// Returns the change of the separation since the beginning of the step, from the current poses of the bodies.
-template <class V>
-FASE_INLINE Affine<V> current_separation_change(const Frame<V>& f, const SolverBody* bodies,
-                                                const std::uint32_t* rows_a, const std::uint32_t* rows_b) {
-    V a[8], b[8];
-    const float* poses = reinterpret_cast<const float*>(bodies) + 8;
-    V::gather8(poses, rows_a, 16, a);
-    V::gather8(poses, rows_b, 16, b);
-    const Vec<V> moved = Vec<V>{b[0], b[1], b[2]} - Vec<V>{a[0], a[1], a[2]};
-    return separation_change(f, moved, Vec<V>{a[4], a[5], a[6]}, a[7], Vec<V>{b[4], b[5], b[6]}, b[7]);
-}
-
 /// The points of each lane's manifold in one pass. An impulse is corrected by -mass (scale v + bias) - decay impulse,
 /// where v is the normal velocity.
 template <class V> struct Points {
     V impulse[4], x[4], y[4], mass[4], bias[4], scale[4], decay[4];
+    V known, hardening;  // see NormalSolver::borne()
 
     template <bool biased>
-    FASE_INLINE void load(const ContactBlock& k, int s, const PassInput& in, const Affine<V>& separation_change) {
+    FASE_INLINE void load(const ContactBlock& k, int s, const PassInput& in, const Affine<V>& separation_change,
+                          const Affine<V>& velocity) {
         const V zero = V::set(0.0f), one = V::set(1.0f), rate = V::set(1.0f / in.sub_step);
         const V bias_rate = V::set(in.softness.mass_scale * in.softness.bias_rate);
         const V mass_scale = V::set(in.softness.mass_scale), impulse_scale = V::set(in.softness.impulse_scale);
         const V fastest_out = V::set(-in.push_out_speed);
+        const V impact_speed = V::set(in.impact_speed), far_away = V::set(1e9f);
+        const V restitution = V::load(k.restitution + s);
+        known = V::load(k.known_load + s);
+        hardening = V::set(1.0f / in.softness.mass_scale);
         for (int i = 0; i < 4; ++i) {
             x[i] = V::load(k.x[i] + s);
             y[i] = V::load(k.y[i] + s);
@@ -271,7 +297,9 @@ template <class V> struct Points {
                 scale[i] = select_greater(separation, zero, one, mass_scale);
                 decay[i] = select_greater(separation, zero, zero, impulse_scale);
             } else {
-                bias[i] = max_of(separation, zero) * rate;
+                // A point that will bounce in the next sub-step keeps its speed until then.
+                const V waits = select_greater(zero - velocity.at(x[i], y[i]), impact_speed, far_away, zero);
+                bias[i] = max_of(separation, zero) * rate + select_greater(restitution, zero, waits, zero);
                 scale[i] = one;
                 decay[i] = zero;
             }
@@ -281,7 +309,7 @@ template <class V> struct Points {
 
 /// Solves the normal impulses of the points by Gauss-Seidel. The impulses change the normal velocity only through the
 /// 3 x 3 coupling, so the bodies are updated once at the end.
-template <class V> struct NormalSolver {
+template <class V, bool biased> struct NormalSolver {
     Points<V> points;
     Affine<V> velocity;
     Coupling<V> coupling;
@@ -304,13 +332,22 @@ template <class V> struct NormalSolver {
         velocity.slope_x = velocity.slope_x + (coupling.m01 * d + coupling.m11 * dx + coupling.m12 * dy);
         velocity.slope_y = velocity.slope_y + (coupling.m02 * d + coupling.m12 * dx + coupling.m22 * dy);
     }
+    /// Returns the impulse that soft point i adds to its own answer: the spring does not decay below the load that the
+    /// contact is known to bear, so stacks do not sag by their weight. It is limited by the answer of a hard contact,
+    /// so it cannot push by itself.
+    FASE_INLINE V borne(int i, V own) const {
+        const V zero = V::set(0.0f);
+        if constexpr (biased) return points.decay[i] * min_of(points.known, max_of(own, zero) * points.hardening);
+        return zero;
+    }
     /// First corrects all points by one common velocity, so that an even load stays even; then each point in turn.
     FASE_INLINE void solve() {
         const V zero = V::set(0.0f);
         V mass_sum = zero, residual = zero, scaled = zero, decayed = zero;
         for (int i = 0; i < 4; ++i) {
+            const V lack = points.mass[i] * error(i) + points.decay[i] * points.impulse[i];
             mass_sum = mass_sum + points.mass[i];
-            residual = residual + (points.mass[i] * error(i) + points.decay[i] * points.impulse[i]);
+            residual = residual + (lack - borne(i, points.impulse[i] - lack));
             scaled = scaled + points.mass[i] * points.scale[i];
             decayed = decayed + points.mass[i] * points.decay[i];
         }
@@ -318,8 +355,10 @@ template <class V> struct NormalSolver {
         const V stiffness = mass_sum * (scaled * coupling.m00) + decayed;
         const V together = select_greater(stiffness, zero, residual / stiffness, zero);
         for (int i = 0; i < 4; ++i) set_impulse(i, points.impulse[i] - points.mass[i] * together);
-        for (int i = 0; i < 4; ++i)
-            set_impulse(i, points.impulse[i] - points.mass[i] * error(i) - points.decay[i] * points.impulse[i]);
+        for (int i = 0; i < 4; ++i) {
+            const V own = points.impulse[i] - points.mass[i] * error(i) - points.decay[i] * points.impulse[i];
+            set_impulse(i, own + borne(i, own));
+        }
     }
 };
 
@@ -329,11 +368,14 @@ template <class V> struct NormalLoad {
     V twist;  // sum of the normal impulses times their lever arms
 };
 
-/// Stores the normal impulses of the points, and returns their load for friction.
-template <class V> FASE_INLINE NormalLoad<V> store_impulses(ContactBlock& k, int s, const Points<V>& points) {
+/// Stores the normal impulses of the points, and returns their load for friction. The relax pass ends the sub-step: it
+/// adds them to the totals of the step.
+template <class V, bool biased>
+FASE_INLINE NormalLoad<V> store_impulses(ContactBlock& k, int s, const Points<V>& points) {
     NormalLoad<V> load{V::set(0.0f), V::set(0.0f)};
     for (int i = 0; i < 4; ++i) {
         points.impulse[i].store(k.impulse[i] + s);
+        if constexpr (!biased) (V::load(k.total[i] + s) + points.impulse[i]).store(k.total[i] + s);
         load.total = load.total + points.impulse[i];
         load.twist = load.twist + points.impulse[i] * V::load(k.lever[i] + s);
     }
@@ -372,18 +414,18 @@ FASE_INLINE void solve_friction(ContactBlock& k, int s, const Frame<V>& f, const
 
 /// One Gauss-Seidel pass. `biased`: soft, with push-out of overlap; otherwise the relax pass: hard, without push-out.
 template <class V, bool one_sided, bool biased> void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
-    Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s);
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
+    Inertia<V> inertia;
+    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
 
-    NormalSolver<V> normal;
-    normal.points.template load<biased>(k, s, in, current_separation_change(f, in.bodies, k.a + s, k.b + s));
+    NormalSolver<V, biased> normal;
     normal.velocity = normal_velocity(f, u);
+    normal.points.template load<biased>(k, s, in, separation_change(k, s, f, in.bodies), normal.velocity);
     normal.coupling = Coupling<V>::load(k, s);
     normal.solve();
-    const NormalLoad<V> load = store_impulses(k, s, normal.points);
+    const NormalLoad<V> load = store_impulses<V, biased>(k, s, normal.points);
     u.template apply<one_sided>(f.n * normal.sum, f.t1 * normal.sum_y - f.t2 * normal.sum_x, f, inertia);
 
     solve_friction<V, one_sided>(k, s, f, inertia, load, u);
@@ -399,6 +441,7 @@ void run_one(Pass pass, ContactBlock* blocks, std::size_t count, const PassInput
     for (std::size_t i = 0; i < count; ++i)
         for (int s = 0; s < block_lanes; s += V::lanes) switch (pass) {
                 case Pass::WarmStart: warm_start_lanes<V, one_sided>(blocks[i], s, in); break;
+                case Pass::FindImpacts: find_impact_lanes<V>(blocks[i], s, in); break;
                 case Pass::Biased: solve_lanes<V, one_sided, true>(blocks[i], s, in); break;
                 case Pass::Relax: solve_lanes<V, one_sided, false>(blocks[i], s, in); break;
                 case Pass::Prepare: break;

@@ -8,10 +8,11 @@ namespace fase::dynamics {
 
 /// The passes in the order of a step; Biased and Relax repeat in each sub-step.
 enum class Pass {
-    Prepare,    ///< computes effective masses and separations from the bodies at the beginning of the step
-    WarmStart,  ///< applies the impulses of the last step
-    Biased,     ///< soft contacts, with push-out of overlap and friction
-    Relax,      ///< hard contacts without push-out, with friction
+    Prepare,      ///< computes effective masses and separations from the bodies at the beginning of the step
+    WarmStart,    ///< applies the impulses of the last step
+    FindImpacts,  ///< marks the contacts that hit with restitution in this sub-step
+    Biased,       ///< soft contacts, with push-out of overlap and friction
+    Relax,        ///< hard contacts without push-out, with friction
 };
 
 /// Runs a pass over `count` blocks that share no dynamic body. Selects the instruction set at run time; all give the

@@ -82,17 +82,13 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         SolverBody& body = bodies[i];
         SolverMotion& motion = motions[i];
-        Vec3 velocity = read(body.velocity), spin = read(body.spin);
-        if (motion.locks != 0) {
-            velocity = without_locked(velocity, motion.locks);
-            spin = without_locked(spin, motion.locks >> 3);
-            write(body.velocity, velocity);
-            write(body.spin, spin);
-        }
+        const Vec3 velocity = read(body.velocity);
+        Vec3 spin = read(body.spin);
         const bool free = motion.is_dynamic && velocity == motion.free_velocity;
         const Vec3 mean = free ? (velocity + motion.velocity_before) * 0.5f : velocity;
-        write(body.moved, read(body.moved) + mean * h);
-        Quat turned{body.turned[0], body.turned[1], body.turned[2], body.turned[3]};
+        write(body.moved, read(body.moved) + mean * h + motion.impact_moved);
+        write(body.rotated, read(body.rotated) + spin * h + motion.impact_rotated);
+        Quat turned = motion.turned;
         const float fast = length_squared(spin) * h * h;
         if (motion.gyroscopic && fast > 1e-8f) {
             const Quatd start = normalized(to_double(motion.rotation));
@@ -112,10 +108,10 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
             const Vec3 t = spin * (h * scale);
             turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
         }
-        body.turned[0] = turned.x;
-        body.turned[1] = turned.y;
-        body.turned[2] = turned.z;
-        body.turned[3] = turned.w;
+        if (const Vec3 t = motion.impact_rotated * 0.5f; length_squared(t) > 0)
+            turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
+        motion.turned = turned;
+        motion.impact_moved = motion.impact_rotated = {};
     }
 }
 

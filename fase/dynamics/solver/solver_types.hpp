@@ -13,20 +13,21 @@ inline constexpr int block_lanes = 8;
 /// One body in the solver. Row 0 is the static world; the last row receives the writes of unused lanes.
 struct alignas(64) SolverBody {
     float velocity[3] = {};
-    float inverse_mass = 0;
+    float inverse_mass_z = 0;
     float spin[3] = {};
     float unused_0 = 0;
     float moved[3] = {};  ///< metres since the beginning of the step
     float unused_1 = 0;
-    float turned[4] = {0, 0, 0, 1};  ///< rotation since the beginning of the step (x, y, z, w)
+    float rotated[3] = {};  ///< the integral of the spin since the beginning of the step, radians
+    float unused_2 = 0;
 };
 static_assert(sizeof(SolverBody) == 64);
 
-/// A body's inverse inertia in world axes (xx, xy, xz, yy, yz, zz) at the beginning of the step, and its inverse mass.
+/// A body's inverse inertia in world axes (xx, xy, xz, yy, yz, zz) at the beginning of the step, and its inverse mass
+/// along the world's x and y axes; SolverBody has that along z. A locked axis has an inverse mass of 0.
 struct alignas(32) SolverMass {
     float inertia[6] = {};
-    float inverse_mass = 0;
-    float unused = 0;
+    float inverse_mass_x = 0, inverse_mass_y = 0;
 };
 static_assert(sizeof(SolverMass) == 32);
 
@@ -39,8 +40,10 @@ struct alignas(64) ContactBlock {
     float normal[3][8], tangent[3][8];
     float offset_a[3][8], offset_b[3][8];
     float x[4][8], y[4][8];
-    float separation[4][8];  ///< at the beginning of the step; huge for absent points
-    float impulse[4][8];
+    float separation[4][8];     ///< at the beginning of the step; huge for absent points
+    float impulse[4][8];        ///< of the sub-step
+    float total[4][8];          ///< the impulses of all sub-steps and impacts
+    float known_load[8];        ///< N s per point and sub-step: the weight that the contact is known to bear
     float point_mass[4][8];     ///< effective mass along the normal; 0: absent point
     float coupling[6][8];       ///< the symmetric 3 x 3: 00 01 02 11 12 22
     float friction_mass[3][8];  ///< inverse of the tangent 2 x 2: 00 01 11
@@ -50,11 +53,11 @@ struct alignas(64) ContactBlock {
     float twist_impulse[8];
     float lever[4][8];  ///< distance of the points from the centre
     float friction[8];
-    float restitution[8];              ///< 0: skipped by the restitution pass
-    float approach[4][8];              ///< m/s at the beginning of the step, positive when closing
-    float closing[8];                  ///< m/s of closing velocity that gravity and forces add per sub-step
-    float turn_a[4][8], turn_b[4][8];  ///< rotation of the bodies since the manifold was computed
-    float shift[3][8];                 ///< relative motion of the centres since then
+    float restitution[8];  ///< 0: skipped by the impacts
+    float approach[4][8];  ///< m/s at the beginning of the step or before the last impact, positive when closing
+    float closing[8];      ///< m/s of closing velocity that gravity and forces add per sub-step
+    float impact[8];       ///< 1: a point hits with restitution in this sub-step; set by Pass::FindImpacts
+    float turns_a[8], turns_b[8];  ///< 1: the points turn with the body; 0: they stay below it when it rolls
 };
 
 /// Coefficients of a soft constraint. Source: Catto 2011, Soft constraints.
@@ -68,7 +71,8 @@ struct Softness {
 struct Colour {
     std::vector<ContactBlock> blocks;
     std::uint32_t contacts = 0;
-    bool one_sided = false;  ///< every a is static or kinematic: it is read, never written
+    bool one_sided = false;    ///< every a is static or kinematic: it is read, never written
+    bool restitution = false;  ///< a contact may bounce
 };
 
 /// The arguments of a pass apart from the blocks.
@@ -78,6 +82,7 @@ struct PassInput {
     float sub_step = 0;
     Softness softness;  ///< stiffer for one-sided colours
     float push_out_speed = 3;
+    float impact_speed = 0.1f;  ///< m/s; a slower approach does not bounce
 };
 
 }  // namespace fase::dynamics

@@ -10,6 +10,7 @@ namespace fase {
 /// A box centred at the origin, its faces perpendicular to the axes of its frame.
 struct Box {
     static constexpr std::string_view name = "box";
+    static constexpr bool is_curved = false;
     Vec3 half{0.5f, 0.5f, 0.5f};  ///< half sizes in metres, above 0
     static constexpr std::array sizes{ShapeSize{"half.x", &Box::half, &Vec3::x},
                                       ShapeSize{"half.y", &Box::half, &Vec3::y},

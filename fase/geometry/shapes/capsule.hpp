@@ -10,6 +10,7 @@ namespace fase {
 /// All points within `radius` of the segment from (0, -half_length, 0) to (0, half_length, 0).
 struct Capsule {
     static constexpr std::string_view name = "capsule";
+    static constexpr bool is_curved = true;
     float radius = 0.25f;      ///< metres, above 0
     float half_length = 0.5f;  ///< metres, half the segment without the caps; 0 or more
     static constexpr std::array sizes{ShapeSize{"radius", &Capsule::radius},

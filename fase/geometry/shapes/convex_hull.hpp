@@ -13,6 +13,7 @@ namespace fase {
 /// merged into one face. Any hull has at least 4 vertices, 4 faces and a volume above 0.
 struct ConvexHull {
     static constexpr std::string_view name = "convex_hull";
+    static constexpr bool is_curved = false;
     /// One flat face with an outward plane; its corners are face_vertices[first, first + count), counter-clockwise
     /// seen from outside. Edge k of the face runs from corner k to corner k + 1.
     struct Face {

@@ -11,6 +11,7 @@ namespace fase {
 /// A round cylinder around the y axis of its frame, from -half_height to half_height.
 struct Cylinder {
     static constexpr std::string_view name = "cylinder";
+    static constexpr bool is_curved = true;
     float radius = 0.5f;       ///< metres, above 0
     float half_height = 0.5f;  ///< metres, above 0
     static constexpr std::array sizes{ShapeSize{"radius", &Cylinder::radius},

@@ -11,6 +11,7 @@ namespace fase {
 /// (it has no mass). It has no support function: its pairs use the support function of the other shape.
 struct HalfSpace {
     static constexpr std::string_view name = "half_space";
+    static constexpr bool is_curved = false;
     static constexpr std::array<ShapeSize<HalfSpace>, 0> sizes{};
     friend constexpr bool operator==(const HalfSpace&, const HalfSpace&) = default;
 };

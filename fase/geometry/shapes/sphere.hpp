@@ -10,6 +10,7 @@ namespace fase {
 /// A sphere around the origin of its frame.
 struct Sphere {
     static constexpr std::string_view name = "sphere";
+    static constexpr bool is_curved = true;
     float radius = 0.5f;  ///< metres, above 0
     static constexpr std::array sizes{ShapeSize{"radius", &Sphere::radius}};
     friend constexpr bool operator==(const Sphere&, const Sphere&) = default;

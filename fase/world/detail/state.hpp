@@ -94,6 +94,7 @@ struct WorldState {
     Settings settings;
     std::uint64_t steps = 0;
     double time = 0;
+    float last_sub_step = 0;  ///< seconds; 0 before the first step
 
     IdPool<BodyTag> body_ids;
     dynamics::Bodies bodies;
