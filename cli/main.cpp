@@ -24,6 +24,7 @@
 #include "cli/bench/queries.hpp"
 #include "cli/bench/step.hpp"
 #include "cli/bench/sudden.hpp"
+#include "cli/check.hpp"
 #endif
 
 namespace fase::cli {
@@ -66,6 +67,7 @@ int run_program(int count, char** arguments) {
     add_level(program, registry);
 #ifdef HAS_FASE_BENCH
     add_bench(program, registry);
+    add_check(program, registry);
 #endif
     if (const std::optional<int> code = line.parse(count, arguments)) return *code;
     return registry.run();
