@@ -16,7 +16,11 @@ constexpr std::size_t block_grain = 24;
 constexpr int overflow_two_sided = Colouring::colours, overflow_one_sided = Colouring::colours + 1;
 constexpr float absent_separation = 1e9f;  // separation of an absent point
 
-constexpr float known_part = 0.92f;        // of a known load: at 0.95 pyramids vibrate, at 1 towers fall
+// The share of a known load that the spring need not bear. The rest damps: at 1, towers fall.
+constexpr float known_part = 0.96f;
+// The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
+// at an eighth, pyramids vibrate.
+constexpr float max_frequency_share = 0.1f;
 constexpr float min_upward = 0.3f;         // cosine to the vertical: steeper contacts are taken to carry nothing
 constexpr float max_resting_gap = 0.005f;  // m
 
@@ -123,7 +127,7 @@ void Solver::load_bodies(const Bodies& bodies, std::span<const std::uint32_t> aw
 }
 
 void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
-                              const Bodies& bodies, const SolverSettings& settings) {
+                              const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks) {
     known_loads_.assign(active.size(), 0);
     const float gravity = length(settings.gravity);
     if (!(gravity > 0)) return;
@@ -132,23 +136,26 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
     carriers_.assign(rows_.size(), {});
     for (std::size_t i = 0; i < loaded_.size(); ++i) {
         Carrier& carrier = carriers_[i + 1];
-        carrier.height = dot(bodies.motion[loaded_[i]].position, up_exact);
+        carrier.height = -dot(bodies.motion[loaded_[i]].position, up_exact);
         const float inverse_mass = bodies.traits[loaded_[i]].inverse_mass;
         if (inverse_mass > 0) carrier.load = std::max(-dot(motions_[i + 1].velocity_step, up) / inverse_mass, 0.0f);
     }
-    // The row of the dynamic body that lies on the contact; 0: none.
-    upper_rows_.resize(active.size());
-    for (std::size_t i = 0; i < active.size(); ++i) {
-        const Contact& c = contacts[active[i]];
-        const float cosine = dot(c.normal, up);
-        std::uint32_t row = 0;
-        if (c.nearest < max_resting_gap && std::abs(cosine) > min_upward) {
-            row = row_of_body_[cosine > 0 ? c.body_b : c.body_a];
-            if (!motions_[row].is_dynamic) row = 0;
+    // Dynamic bodies that lie on their contacts; row 0 takes the contacts that carry nothing.
+    supports_.resize(active.size());
+    parallel_ranges(tasks, active.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Contact& c = contacts[active[i]];
+            const float cosine = dot(c.normal, up);
+            Support& support = supports_[i];
+            support = {std::abs(cosine), 0, row_of_body_[cosine > 0 ? c.body_a : c.body_b]};
+            if (!(c.nearest < max_resting_gap && support.cosine > min_upward)) continue;
+            const std::uint32_t row = row_of_body_[cosine > 0 ? c.body_b : c.body_a];
+            if (motions_[row].is_dynamic) support.upper = row;
         }
-        upper_rows_[i] = row;
-        carriers_[row].cosines += std::abs(cosine);
-        ++carriers_[row].end;
+    });
+    for (const Support& support : supports_) {
+        carriers_[support.upper].cosines += support.cosine;
+        ++carriers_[support.upper].end;
     }
     std::uint32_t sum = 0;
     for (Carrier& carrier : carriers_) {
@@ -158,22 +165,18 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
     }
     contacts_below_.resize(active.size());
     for (std::size_t i = 0; i < active.size(); ++i)
-        contacts_below_[carriers_[upper_rows_[i]].end++] = static_cast<std::uint32_t>(i);
+        contacts_below_[carriers_[supports_[i].upper].end++] = static_cast<std::uint32_t>(i);
     top_down_.clear();
     for (std::uint32_t row = 1; row + 1 < rows_.size(); ++row)
-        if (carriers_[row].first != carriers_[row].end) top_down_.push_back(row);
-    std::sort(top_down_.begin(), top_down_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return carriers_[a].height != carriers_[b].height ? carriers_[a].height > carriers_[b].height : a < b;
-    });
-    for (const std::uint32_t row : top_down_) {
+        if (carriers_[row].first != carriers_[row].end) top_down_.push_back({carriers_[row].height, row});
+    std::sort(top_down_.begin(), top_down_.end());
+    for (const auto& [height, row] : top_down_) {
         const Carrier& carrier = carriers_[row];
         for (std::uint32_t k = carrier.first; k < carrier.end; ++k) {
-            const Contact& c = contacts[active[contacts_below_[k]]];
-            const float cosine = std::abs(dot(c.normal, up));
-            const float down = carrier.load * (cosine / carrier.cosines);
-            known_loads_[contacts_below_[k]] = down * cosine;  // friction may bear the rest: never too much
-            const std::uint32_t row_a = row_of_body_[c.body_a];
-            carriers_[row_a == row ? row_of_body_[c.body_b] : row_a].load += down;
+            const Support& support = supports_[contacts_below_[k]];
+            const float down = carrier.load * (support.cosine / carrier.cosines);
+            known_loads_[contacts_below_[k]] = down * support.cosine;  // friction may bear the rest: never too much
+            carriers_[support.lower].load += down;
         }
     }
 }
@@ -240,7 +243,7 @@ void Solver::fill_lane(ContactBlock& block, int lane, const Slot& slot, const Co
 
 void Solver::load_contacts(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
                            const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks) {
-    find_known_loads(contacts, active, bodies, settings);
+    find_known_loads(contacts, active, bodies, settings, tasks);
     colouring_.reset(rows_.size());
     for (Colour& colour : colours_) {
         colour.contacts = 0;
@@ -286,8 +289,7 @@ void Solver::load_contacts(std::span<const Contact> contacts, std::span<const st
 
 void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& tasks) {
     const float h = settings.time_step / static_cast<float>(settings.sub_steps);
-    // Beyond an eighth of the sub-step rate, one pass per sub-step does not settle the springs: towers vibrate.
-    const float frequency = std::min(settings.contact_frequency, 0.125f / h);
+    const float frequency = std::min(settings.contact_frequency, max_frequency_share / h);
     PassInput input{rows_.data(),
                     masses_.data(),
                     h,

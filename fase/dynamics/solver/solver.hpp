@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fase/core/tasks.hpp"
@@ -69,17 +70,22 @@ private:
     };
     /// A body that passes its load on to what it lies on.
     struct Carrier {
-        double height = 0;  // of the centre of mass
+        double height = 0;  // of the centre of mass, negated: the highest sorts first
         float load = 0;     // N s per sub-step: its own weight and what lies on it
         float cosines = 0;  // sum over the contacts below
         std::uint32_t first = 0, end = 0;
+    };
+    /// The bodies of a contact as known loads pass it: from the row `upper` (0: it carries nothing) to `lower`.
+    struct Support {
+        float cosine;  // of the angle between the normal and the vertical
+        std::uint32_t upper, lower;
     };
     /// Computes the impulse per sub-step along the normal that each contact bears when all bodies rest: from the
     /// highest body down, the weight of a body and what lies on it is shared between the contacts below. Without it, a
     /// soft contact learns its load only by giving way. It depends on the present step alone. Source of the order:
     /// Guendelman, Bridson, Fedkiw 2003, Nonconvex rigid bodies with stacking (shock propagation; there for masses).
     void find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
-                          const Bodies& bodies, const SolverSettings& settings);
+                          const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks);
     void fill_lane(ContactBlock& block, int lane, const Slot& slot, const Contact& contact, float load,
                    const Bodies& bodies, const SolverSettings& settings) const;
     void store_contact(Contact& contact, const ContactBlock& block, int lane, const Slot& slot, const Bodies& bodies,
@@ -96,9 +102,12 @@ private:
     std::array<Colour, Colouring::colours + 2> colours_;  // the last two: overflow, two-sided and one-sided
     std::vector<Slot> slots_;
     Impacts impacts_;
-    std::vector<float> known_loads_;                                     // by active contact
-    std::vector<Carrier> carriers_;                                      // by row
-    std::vector<std::uint32_t> upper_rows_, contacts_below_, top_down_;  // scratch of find_known_loads()
+    std::vector<float> known_loads_;  // by active contact
+    std::vector<Carrier> carriers_;   // by row
+    // Scratch of find_known_loads():
+    std::vector<Support> supports_;  // by active contact
+    std::vector<std::uint32_t> contacts_below_;
+    std::vector<std::pair<double, std::uint32_t>> top_down_;  // negated height, row
     SolverCounts counts_;
 };
 
