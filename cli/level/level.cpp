@@ -147,6 +147,9 @@ void compile(const LevelCommand& command, const ParsedOptions& options, const Wa
         return;
     }
     job.map = std::move(*map);
+    for (const std::string& what : job.map->left_out)
+        std::fprintf(stderr, "fase: warning: %s: %s: left out %s\n", printable(command.file).c_str(),
+                     printable(job.map->name).c_str(), what.c_str());
     const auto start = std::chrono::steady_clock::now();
     Result<LevelBsp> bsp = options.read ? level::read_bsp(command.file, wad, job.marker, *job.map, *options.read)
                                         : level::compile(*job.map, options.compile);

@@ -172,6 +172,8 @@ Result<LevelScene> load_level_scene(const std::string& path, const std::string& 
     const std::size_t added = placer.add_bodies(count);
     level.scene = placer.take();
     add_level(*solids, level.scene);
+    for (const std::string& what : level.map.left_out)
+        level.scene.warnings.push_back(fmt::format("{}: left out {}", level.map.name, what));
     if (added < count) level.scene.warnings.push_back(fmt::format("only {} of {} bodies fit", added, count));
     return level;
 }

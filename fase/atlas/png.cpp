@@ -9,6 +9,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
@@ -91,6 +92,9 @@ bool read_header(png_structp png, png_infop info, PngIo& io, Header& header) {
     png_set_read_fn(png, &io, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // read_png() checks max_pixels instead
+    // Texts, profiles and the like are not read: a few bytes of them may expand to gigabytes.
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+    png_set_chunk_malloc_max(png, io.size);
     png_read_info(png, info);
     png_get_IHDR(png, info, &header.width, &header.height, &header.depth, &header.kind, &header.interlaced, nullptr,
                  nullptr);
@@ -126,6 +130,21 @@ bool read_rows(png_structp png, png_infop info, PngIo& io, std::uint8_t* pixels,
     return true;
 }
 
+/// Checks that every chunk lies within the file, so that libpng allocates and reads no more than there is. Returns the
+/// offset of the first one that does not.
+std::optional<std::size_t> chunk_past_end(std::span<const std::byte> bytes) {
+    constexpr std::size_t frame = 12;  // length, name and checksum
+    for (std::size_t at = 8; at < bytes.size();) {
+        if (bytes.size() - at < frame) return at;
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) length = length << 8 | std::to_integer<std::size_t>(bytes[at + i]);
+        if (length > bytes.size() - at - frame) return at;
+        if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return std::nullopt;  // nothing is read beyond
+        at += frame + length;
+    }
+    return bytes.size();
+}
+
 bool write_all(png_structp png, png_infop info, PngIo& io, const Image& image) {
     if (setjmp(io.back) != 0) return false;
     png_set_write_fn(png, &io, on_write, on_flush);
@@ -150,6 +169,11 @@ Result<Image> read_png(std::span<const std::byte> bytes, const std::string& wher
     const auto refuse = [&](std::string problem) {
         return Error{Status::Format, detail::at_byte(where, io.size - io.left), std::move(problem), {}};
     };
+    if (const auto at = chunk_past_end(bytes))
+        return Error{Status::Format,
+                     detail::at_byte(where, *at),
+                     "found a broken PNG (the file ends inside a chunk, or without an IEND); expected a complete one",
+                     {}};
     Handles handles;
     handles.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &io, on_error, on_warning);
     if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);

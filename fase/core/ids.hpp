@@ -1,5 +1,6 @@
 #pragma once
 /// Generational ids: stale, foreign and random ids are detected.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -20,7 +21,9 @@ template <class Tag> struct Id {
 
 /// Issues ids over dense slots 0..size()-1 and checks whether an id is valid. Stores no values: the user keeps them in
 /// arrays indexed by `id.index`. Reuses free slots with the next generation, last freed first; retires a slot after
-/// 65,535 generations. All O(1). Not thread-safe for writing; const calls are safe from any thread.
+/// 65,535 generations. No id is issued twice, not even after the pool went back to an earlier state (continue_after()).
+/// All O(1). add() may throw std::bad_alloc and then changes nothing; no other call in daily use allocates. Not
+/// thread-safe for writing; const calls are safe from any thread.
 template <class Tag> class IdPool {
 public:
     /// @param owner distinguishes this pool's ids from those of every other pool; any number.
@@ -28,31 +31,23 @@ public:
 
     /// Issues a new id; `index` is a reused slot, or size() before the call.
     Id<Tag> add() {
-        std::uint32_t index;
-        if (free_.empty()) {
-            index = static_cast<std::uint32_t>(slots_.size());
-            // So that remove() never allocates; doubling, because reserving one more each time would reallocate each
-            // time.
-            if (free_.capacity() <= slots_.size()) free_.reserve(2 * slots_.size() + 1);
-            slots_.push_back(Slot{1, true});
-        } else {
-            index = free_.back();
-            free_.pop_back();
-            slots_[index].alive = true;
-        }
-        ++alive_;
-        return {index, slots_[index].generation, owner_};
+        if (free_.empty()) return add_slot();
+        const std::uint32_t index = free_.back();
+        free_.pop_back();
+        return issue(index);
+    }
+    /// Allocates what the next add() needs, which then cannot fail. Returns size() after it.
+    std::size_t reserve_one() {
+        if (!free_.empty()) return slots_.size();
+        reserve(next_slot() + 1);
+        return next_slot() + 1;
     }
     /// Frees the slot. Returns false and changes nothing when the id is not valid.
     bool remove(Id<Tag> id) {
         if (!contains(id)) return false;
-        Slot& slot = slots_[id.index];
-        slot.alive = false;
+        slots_[id.index].alive = false;
         --alive_;
-        if (slot.generation != 0xffff) {
-            ++slot.generation;
-            free_.push_back(id.index);
-        }
+        if (newest_[id.index] != last_generation) free_.push_back(id.index);
         return true;
     }
     [[nodiscard]] bool contains(Id<Tag> id) const {
@@ -74,25 +69,87 @@ public:
 
     /// The state of one slot, as a snapshot stores it.
     struct Slot {
-        std::uint16_t generation = 1;
+        std::uint16_t generation = 1;  ///< of the id in use, or of the last one
         bool alive = false;
     };
-    /// The slots and the free list, for snapshots; restore() takes them back.
+    static constexpr std::uint16_t last_generation = 0xffff;
+    /// The slots, the free list, and the newest generation that each slot has issued (longer than slots() when the pool
+    /// had more slots in a state that it went back from). For snapshots; restore() takes them back.
     [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
     [[nodiscard]] const std::vector<std::uint32_t>& free_list() const { return free_; }
-    void restore(std::vector<Slot> slots, std::vector<std::uint32_t> free_list) {
+    [[nodiscard]] const std::vector<std::uint16_t>& newest() const { return newest_; }
+    /// Takes the state of a pool, which may come from any source. Returns false, and changes nothing, when no pool can
+    /// have this state.
+    [[nodiscard]] bool restore(std::vector<Slot> slots, std::vector<std::uint32_t> free_list,
+                               std::vector<std::uint16_t> newest) {
+        if (newest.size() < slots.size() || slots.size() >= no_index) return false;
+        std::vector<bool> is_free(slots.size(), false);
+        for (const std::uint32_t index : free_list) {
+            if (index >= slots.size() || is_free[index]) return false;
+            is_free[index] = true;
+        }
+        std::uint32_t alive = 0;
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            if (slots[i].generation == 0 || slots[i].generation > newest[i]) return false;
+            if (is_free[i] != (!slots[i].alive && newest[i] != last_generation)) return false;
+            alive += slots[i].alive ? 1 : 0;
+        }
+        free_list.reserve(slots.size());
         slots_ = std::move(slots);
         free_ = std::move(free_list);
-        free_.reserve(slots_.size());
-        alive_ = 0;
-        for (const Slot& slot : slots_) alive_ += slot.alive ? 1 : 0;
+        newest_ = std::move(newest);
+        alive_ = alive;
+        return true;
+    }
+    /// Call after restore(), with the state that this one replaces: no id that `before` issued is issued again. With
+    /// `renew`, ids in use that `before` has issued, too, get a new generation. Returns false when a slot in use has no
+    /// generation left for that.
+    [[nodiscard]] bool continue_after(const IdPool& before, bool renew) {
+        if (newest_.size() < before.newest_.size()) newest_.resize(before.newest_.size(), 0);
+        for (std::size_t i = 0; i < before.newest_.size(); ++i) {
+            const bool is_renewed =
+                renew && alive_at(static_cast<std::uint32_t>(i)) && slots_[i].generation <= before.newest_[i];
+            newest_[i] = std::max(newest_[i], before.newest_[i]);
+            if (!is_renewed) continue;
+            if (newest_[i] == last_generation) return false;
+            slots_[i].generation = ++newest_[i];
+        }
+        std::erase_if(free_, [&](std::uint32_t index) { return newest_[index] == last_generation; });
+        return true;
     }
 
 private:
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> free_;
+    std::vector<std::uint16_t> newest_;
     std::uint32_t alive_ = 0;
     std::uint16_t owner_;
+
+    Id<Tag> issue(std::uint32_t index) {
+        slots_[index] = {++newest_[index], true};
+        ++alive_;
+        return {index, slots_[index].generation, owner_};
+    }
+    /// The index of the next new slot. Skips slots that were retired in a state that the pool went back from.
+    [[nodiscard]] std::size_t next_slot() const {
+        std::size_t index = slots_.size();
+        while (index < newest_.size() && newest_[index] == last_generation) ++index;
+        return index;
+    }
+    /// Doubles, because reserving one more each time would reallocate each time. The free list has room for all slots,
+    /// so that remove() never allocates.
+    void reserve(std::size_t size) {
+        if (slots_.capacity() < size) slots_.reserve(2 * size);
+        if (newest_.capacity() < size) newest_.reserve(2 * size);
+        if (free_.capacity() < size) free_.reserve(2 * size);
+    }
+    Id<Tag> add_slot() {
+        const std::size_t index = next_slot();
+        reserve(index + 1);
+        slots_.resize(index + 1, Slot{last_generation, false});
+        if (newest_.size() < slots_.size()) newest_.push_back(0);
+        return issue(static_cast<std::uint32_t>(index));
+    }
 };
 
 }  // namespace fase

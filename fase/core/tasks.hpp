@@ -1,6 +1,8 @@
 #pragma once
 /// Interface to a task scheduler: oneTBB, a single thread, or the user's scheduler.
+#include <atomic>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <memory>
 
@@ -14,7 +16,8 @@ class TaskRunner {
 public:
     virtual ~TaskRunner() = default;
     /// Calls `chunk(i)` once for each i in 0..count-1, in any order, from any threads, and returns when all are done.
-    /// `chunk` does not throw. A nested call from inside a chunk may run serially.
+    /// `chunk` does not throw: run_chunks() keeps exceptions inside. A nested call from inside a chunk may run
+    /// serially.
     virtual void run(std::size_t count, const std::function<void(std::size_t)>& chunk) = 0;
     /// Number of chunks that may run in parallel, at least 1: a hint for the chunk size.
     [[nodiscard]] virtual int threads() const = 0;
@@ -26,6 +29,21 @@ public:
 /// Makes a runner on `threads` threads of oneTBB, the caller included; 0: the number of cores; 1: the serial runner.
 /// Several runners may exist at the same time.
 [[nodiscard]] std::unique_ptr<TaskRunner> make_thread_runner(int threads);
+
+/// Runs chunks that may throw: runs all of them, then throws the first exception on the calling thread. A runner need
+/// not know about exceptions.
+template <class F> void run_chunks(TaskRunner& tasks, std::size_t count, const F& chunk) {
+    std::atomic<bool> failed = false;
+    std::exception_ptr first;
+    tasks.run(count, [&](std::size_t i) {
+        try {
+            chunk(i);
+        } catch (...) {
+            if (!failed.exchange(true)) first = std::current_exception();
+        }
+    });
+    if (failed) std::rethrow_exception(first);
+}
 
 /// Calls `body` without inlining, so that the compiler cannot move its arithmetic across the change of the
 /// floating-point mode.
@@ -43,7 +61,7 @@ template <class F> void parallel_ranges(TaskRunner& tasks, std::size_t count, st
         body(std::size_t{0}, count);
         return;
     }
-    tasks.run(chunks, [&](std::size_t i) {
+    run_chunks(tasks, chunks, [&](std::size_t i) {
         const StandardFloats floats;
         const std::size_t begin = i * grain;
         call_range(body, begin, begin + grain < count ? begin + grain : count);

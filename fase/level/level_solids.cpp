@@ -36,6 +36,7 @@ public:
         // One box for each one-sided line; then one for each other seg without a partner.
         for (std::uint32_t l = 0; l < map_.lines.size(); ++l) {
             const Line& line = map_.lines[l];
+            if (line.has_no_side()) continue;  // nothing stands there
             if (line.left == no_side || line.right == no_side) {
                 const Point from = to_point(map_.vertices[line.from]), to = to_point(map_.vertices[line.to]);
                 if (line.right == no_side) {

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "fase/level/detail/little_endian.hpp"
 
 namespace fase::level {
@@ -40,12 +43,6 @@ public:
                            {}};
         }
     }
-    void check_index(std::string_view lump, std::size_t entry, std::string_view what, std::size_t index,
-                     std::size_t count) {
-        if (index < count || error_) return;
-        fail(fmt::format("{}[{}]", lump, entry),
-             fmt::format("found {} {}; expected one of the {}", what, index, count));
-    }
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 
 private:
@@ -55,21 +52,51 @@ private:
     std::optional<Error> error_;
 };
 
-void check_references(Reader& reader, const Map& map) {
-    for (std::size_t i = 0; i < map.sides.size(); ++i)
-        reader.check_index("SIDEDEFS", i, "sector", map.sides[i].sector, map.sectors.size());
-    for (std::size_t i = 0; i < map.lines.size() && !reader.error(); ++i) {
-        const Line& line = map.lines[i];
-        reader.check_index("LINEDEFS", i, "vertex", line.from, map.vertices.size());
-        reader.check_index("LINEDEFS", i, "vertex", line.to, map.vertices.size());
-        if (line.right != no_side) reader.check_index("LINEDEFS", i, "side", line.right, map.sides.size());
-        if (line.left != no_side) reader.check_index("LINEDEFS", i, "side", line.left, map.sides.size());
-        if (reader.error()) return;
-        const std::string entry = fmt::format("LINEDEFS[{}]", i);
-        if (line.right == no_side) reader.fail(entry, "found a line without a right side; expected one");
-        if (map.vertices[line.from] == map.vertices[line.to])
-            reader.fail(entry, "found a line of zero length; expected two different corners");
+/// The faults of lines, in the order in which they are looked for.
+enum class Fault { Vertex, Length, NoSide, Side, Sector, Count };
+constexpr std::array<std::string_view, static_cast<std::size_t>(Fault::Count)> fault_names{
+    "with a vertex that does not exist", "of zero length", "without a side", "with a side that does not exist",
+    "with a side whose sector does not exist"};
+
+/// The fault that keeps a whole line from being used; a bad side is taken off it before.
+std::optional<Fault> remove_bad_sides(const Map& map, Line& line) {
+    if (line.from >= map.vertices.size() || line.to >= map.vertices.size()) return Fault::Vertex;
+    if (map.vertices[line.from] == map.vertices[line.to]) return Fault::Length;
+    if (line.has_no_side()) return Fault::NoSide;
+    std::optional<Fault> fault;
+    for (std::uint16_t* side : {&line.left, &line.right}) {
+        if (*side == no_side) continue;
+        if (*side < map.sides.size() && map.sides[*side].sector < map.sectors.size()) continue;
+        fault = *side < map.sides.size() ? Fault::Sector : Fault::Side;
+        *side = no_side;
     }
+    return fault;
+}
+
+/// Makes all references valid, and notes what was left out.
+void leave_out_faults(Map& map) {
+    struct Found {
+        std::size_t count = 0, first = 0;
+    };
+    std::array<Found, fault_names.size()> found;
+    for (std::size_t i = 0; i < map.lines.size(); ++i) {
+        Line& line = map.lines[i];
+        const std::optional<Fault> fault = remove_bad_sides(map, line);
+        if (!fault) continue;
+        Found& kind = found[static_cast<std::size_t>(*fault)];
+        if (kind.count++ == 0) kind.first = i;
+        if (*fault == Fault::Vertex) line.from = line.to = 0;
+        if (*fault == Fault::Vertex || *fault == Fault::Length) line.right = line.left = no_side;
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto [count, first] = found[i];
+        if (count == 0) continue;
+        map.left_out.push_back(
+            count == 1 ? fmt::format("a line {}, LINEDEFS[{}]", fault_names[i], first)
+                       : fmt::format("{} lines {}, the first is LINEDEFS[{}]", count, fault_names[i], first));
+    }
+    for (Side& side : map.sides)  // those that are left belong to no line
+        if (side.sector >= map.sectors.size()) side.sector = 0;
 }
 
 }  // namespace
@@ -109,12 +136,15 @@ Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view m
         map.lines.push_back({read_u16(b, 0), read_u16(b, 2), read_u16(b, 4), read_u16(b, 6), read_u16(b, 8),
                              read_u16(b, 10), read_u16(b, 12)});
     });
-    check_references(reader, map);
     if (reader.error()) return *reader.error();
-    if (map.lines.empty())
-        return Error{
-            Status::Format, fmt::format("{}: {}", name, map.name), "found no lines; expected at least one", {}};
-    return map;
+    leave_out_faults(map);
+    if (std::any_of(map.lines.begin(), map.lines.end(), [](const Line& line) { return !line.has_no_side(); }))
+        return map;
+    return Error{Status::Format,
+                 fmt::format("{}: {}", name, map.name),
+                 map.left_out.empty() ? "found no lines; expected at least one"
+                                      : fmt::format("found {}; expected a line that can be used", map.left_out[0]),
+                 {}};
 }
 
 }  // namespace fase::level

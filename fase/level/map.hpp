@@ -28,6 +28,9 @@ struct Line {
     static constexpr std::uint16_t blocks = 1;
     /// Bit of `flags`: the line has two sides and is transparent.
     static constexpr std::uint16_t two_sided = 4;
+    /// Whether the line has no side. A line of the file that cannot be used is kept like this, because others are named
+    /// by their numbers.
+    [[nodiscard]] bool has_no_side() const { return right == no_side && left == no_side; }
 };
 
 /// The textures on one side of a line, and the sector to which it belongs.
@@ -51,7 +54,7 @@ struct Thing {
     std::uint16_t type = 0, flags = 0;
 };
 
-/// A map with valid references.
+/// A map with valid references: all vertices of lines exist, and all sides and sectors of lines.
 struct Map {
     std::string name;
     std::vector<Vertex> vertices;
@@ -59,13 +62,17 @@ struct Map {
     std::vector<Side> sides;
     std::vector<Sector> sectors;
     std::vector<Thing> things;
+    /// What the file has and the map could not use, one text for each kind: "2 lines of zero length, the first is
+    /// LINEDEFS[4]".
+    std::vector<std::string> left_out;
 };
 
 /// Reads the lumps of a map in Doom's own format. `name` is the file, for errors.
-/// Errors: Format, with lump and entry, for a lump size that is not a multiple of the entry size, a vertex, side or
-/// sector that does not exist, a line of zero length or without a right side. Unsupported for maps in Hexen's format or
-/// as text. BadArgument if there is no such map; the message lists the maps of the file.
-/// Source of the format: Fell and others 1994, The unofficial Doom specs, chapter 4.
+/// Lines that cannot be used lose their sides, and Map::left_out names them: lines of zero length, without a side, with
+/// a vertex, side or sector that does not exist. A side that no line uses is not looked at. Errors: Format for a lump
+/// size that is not a multiple of the entry size, and for a map of which no line can be used. Unsupported for maps in
+/// Hexen's format or as text. BadArgument if there is no such map; the message lists the maps of the file. Source of
+/// the format: Fell and others 1994, The unofficial Doom specs, chapter 4.
 Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view map);
 
 }  // namespace fase::level

@@ -51,7 +51,8 @@ public:
         const bool gl = which == BspLumps::Gl;
         const std::string_view extended = gl ? "SSECTORS" : "NODES";
         const auto lump = wad_.find_in_map(marker_, extended);
-        const std::string magic = lump ? magic_of(wad_.lumps[*lump].bytes) : "";
+        // Classic nodes may begin with the same letters, which are coordinates there; extended ones come with no segs.
+        const std::string magic = lump && is_empty("SEGS") ? magic_of(wad_.lumps[*lump].bytes) : "";
         if (magic == (gl ? "XGLN" : "XNOD")) {
             read_extended(extended, wad_.lumps[*lump].bytes, gl);
         } else if (magic == "ZNOD" || magic == "ZGLN" || magic == "XGL2" || magic == "XGL3") {
@@ -78,6 +79,10 @@ private:
     LevelBsp out_;
     std::optional<Error> error_;
 
+    [[nodiscard]] bool is_empty(std::string_view name) const {
+        const auto lump = wad_.find_in_map(marker_, name);
+        return !lump || wad_.lumps[*lump].bytes.empty();
+    }
     static std::string magic_of(Bytes bytes) {
         std::string magic;
         for (std::size_t i = 0; i < 4 && i < bytes.size(); ++i) magic += static_cast<char>(bytes[i]);

@@ -29,6 +29,13 @@ public:
         pairs.clear();
         values.clear();
     }
+    /// Allocates for `count` pairs: move_to() between lists that have room for the pairs of both cannot fail.
+    void reserve(std::size_t count) {
+        pairs.reserve(count);
+        values.reserve(count);
+        spare_pairs_.reserve(count);
+        spare_values_.reserve(count);
+    }
     /// Appends a pair greater than all in the list.
     void append(broad::Pair pair, std::uint32_t value) {
         pairs.push_back(pair);

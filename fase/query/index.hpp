@@ -1,6 +1,7 @@
 #pragma once
 /// A spatial index for values of any type: the broad-phase structures without the rest of Fase.
 #include <algorithm>
+#include <new>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,6 +26,10 @@ namespace fase {
 /// index passes const values; its queries are thread-safe.
 ///
 /// References to values are valid until the next insert(). Ids of another index of the same type are not detected.
+///
+/// When memory runs out, insert() returns the default id and commit() returns false; nothing has changed then, and the
+/// next call works. move(), erase(), set_awake() and clear() allocate nothing. A query throws std::bad_alloc before it
+/// calls back.
 template <class T, broad::Structure S = broad::DynamicBvh> class Index {
 public:
     /// Identifies a value until it is erased. Default: no value.
@@ -44,17 +49,13 @@ public:
     explicit Index(S structure) : structure_(std::move(structure)) {}
 
     Id insert(const Aabb& box, T value) {
-        auto index = static_cast<std::uint32_t>(slots_.size());
-        if (free_.empty()) {
-            slots_.emplace_back();
-        } else {
-            index = free_.back();
-            free_.pop_back();
-        }
+        if (free_.empty() && !add_free_slot()) return {};
+        const std::uint32_t index = free_.back();
         slots_[index].value.emplace(std::move(value));
+        free_.pop_back();
         slots_[index].box = box;
-        structure_.insert(index, box);
-        committed_ = false;
+        slots_[index].awake = true;
+        mark_changed(index);
         return id_of(index);
     }
     /// Changes the box of a value. Returns false, and changes nothing, when the id is invalid; erase() and set_awake()
@@ -62,35 +63,41 @@ public:
     bool move(Id id, const Aabb& box) {
         if (!contains(id)) return false;
         slots_[id.index].box = box;
-        structure_.move(id.index, box);
-        committed_ = false;
+        mark_changed(id.index);
         return true;
     }
     bool erase(Id id) {
         if (!contains(id)) return false;
         release_slot(id.index);
-        structure_.erase(id.index);
-        committed_ = false;
         return true;
     }
     /// Sets whether a value is awake, for awake_pairs(). Values are inserted awake.
     bool set_awake(Id id, bool awake) {
         if (!contains(id)) return false;
-        structure_.set_awake(id.index, awake);
-        committed_ = false;
+        slots_[id.index].awake = awake;
+        mark_changed(id.index);
         return true;
     }
     /// Erases all values and invalidates all ids. Keeps the memory.
     void clear() {
         for (auto i = static_cast<std::uint32_t>(slots_.size()); i-- > 0;)
             if (slots_[i].value) release_slot(i);
-        structure_.clear();
-        committed_ = false;
     }
-    /// Applies changes; call it after changes and before queries.
-    void commit() {
-        structure_.commit();
+    /// Applies changes; call it after changes and before queries. Returns false when memory runs out: the changes are
+    /// kept for the next commit().
+    bool commit() {
+        if (committed_) return true;
+        try {
+            for (const std::uint32_t index : changed_) apply(index);
+            structure_.commit();
+        } catch (const std::bad_alloc&) {
+            start_again();
+            return false;
+        }
+        for (const std::uint32_t index : changed_) slots_[index].changed = false;
+        changed_.clear();
         committed_ = true;
+        return true;
     }
 
     [[nodiscard]] bool contains(Id id) const {
@@ -101,7 +108,7 @@ public:
     [[nodiscard]] T& value(Id id) { return *slots_[checked(id)].value; }
     [[nodiscard]] const T& value(Id id) const { return *slots_[checked(id)].value; }
     [[nodiscard]] const Aabb& box(Id id) const { return slots_[checked(id)].box; }
-    [[nodiscard]] bool is_awake(Id id) const { return structure_.is_awake(checked(id)); }
+    [[nodiscard]] bool is_awake(Id id) const { return slots_[checked(id)].awake; }
     /// Returns the structure, for the queries of fase/query, broad::stats_of() and drawing. Proxies are the ids'
     /// indices.
     [[nodiscard]] const S& structure() const { return structure_; }
@@ -199,10 +206,14 @@ private:
         std::optional<T> value;  // empty in free slots
         Aabb box;
         std::uint32_t generation = 1;
+        bool awake = true;
+        bool stored = false;   // structure_ has its box
+        bool changed = false;  // it is in changed_
     };
     S structure_;
     std::vector<Slot> slots_;  // by the id's index
     std::vector<std::uint32_t> free_;
+    std::vector<std::uint32_t> changed_;  // what the next commit() gives to structure_
     std::vector<broad::Pair> pairs_;
     std::vector<Proxy> found_;
     bool committed_ = true;
@@ -220,6 +231,49 @@ private:
         slots_[index].value.reset();
         ++slots_[index].generation;
         free_.push_back(index);
+        mark_changed(index);
+    }
+    /// Adds a free slot, with memory for it in all lists. Returns false, and changes nothing, when memory runs out.
+    bool add_free_slot() {
+        try {
+            const std::size_t size = slots_.size() + 1;
+            if (slots_.capacity() < size) slots_.reserve(2 * size);
+            if (free_.capacity() < size) free_.reserve(2 * size);
+            if (changed_.capacity() < size) changed_.reserve(2 * size);
+        } catch (const std::bad_alloc&) {
+            return false;
+        }
+        free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        slots_.emplace_back();
+        return true;
+    }
+    void mark_changed(std::uint32_t index) {
+        if (!slots_[index].changed) changed_.push_back(index);
+        slots_[index].changed = true;
+        committed_ = false;
+    }
+    void apply(std::uint32_t index) {
+        Slot& slot = slots_[index];
+        if (!slot.value) {
+            if (slot.stored) structure_.erase(index);
+            slot.stored = false;
+            return;
+        }
+        if (slot.stored) {
+            structure_.move(index, slot.box);
+        } else {
+            structure_.insert(index, slot.box);
+        }
+        slot.stored = true;
+        if (structure_.is_awake(index) != slot.awake) structure_.set_awake(index, slot.awake);
+    }
+    /// After a commit that failed half-way: empties the structure, and marks all values for the next commit.
+    void start_again() {
+        structure_.clear();
+        for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+            slots_[i].stored = false;
+            if (slots_[i].value) mark_changed(i);
+        }
     }
     [[nodiscard]] std::optional<Hit> hit_of(const std::optional<query::Hit>& hit) const {
         if (!hit) return std::nullopt;

@@ -8,54 +8,17 @@ namespace fase {
 
 namespace {
 
-Result<void> check_def(const BodyDef& def) {
-    if (auto r = check_position(def.position, "BodyDef.position"); !r) return r;
-    if (auto rotation = check_rotation(def.rotation, "BodyDef.rotation"); !rotation) return rotation.error();
-    if (!is_finite(def.linear_velocity))
-        return refused("BodyDef.linear_velocity", "a number that is not finite", "m/s");
-    if (!is_finite(def.angular_velocity))
-        return refused("BodyDef.angular_velocity", "a number that is not finite", "rad/s");
-    if (auto r = check_number(def.linear_damping, 0, "BodyDef.linear_damping"); !r) return r;
-    if (auto r = check_number(def.angular_damping, 0, "BodyDef.angular_damping"); !r) return r;
-    if (auto r = check_number(def.gravity_scale, -Aabb::infinity, "BodyDef.gravity_scale"); !r) return r;
-    if (def.kind > BodyKind::Dynamic) return refused("BodyDef.kind", "an unknown kind", "a BodyKind");
-    if (def.mass)
-        if (auto checked = check(*def.mass); !checked) {
-            Error error = checked.error();
-            error.where = "BodyDef.mass: " + error.where;
-            return error;
-        }
-    return {};
-}
-
-Result<void> check_def(const ColliderDef& def) {
-    if (!is_finite(def.pose.position)) return refused("ColliderDef.pose", "a number that is not finite", "metres");
-    if (auto rotation = check_rotation(def.pose.rotation, "ColliderDef.pose.rotation"); !rotation)
-        return rotation.error();
-    if (auto r = check_number(def.density, 0, "ColliderDef.density"); !r) return r;
-    return check(def.material);
-}
-
 Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef& def) {
     if (auto checked = check(shape); !checked) return checked;
-    if (auto checked = check_def(def); !checked) return checked;
+    if (auto checked = check(def); !checked) return checked;
     if (kind == BodyKind::Dynamic && std::holds_alternative<HalfSpace>(shape) && !def.sensor)
         return refused("World::add_collider", "a half-space on a dynamic body", "a shape with a mass",
                        "make the body static or kinematic");
     return {};
 }
 
-BodyId make_body(WorldState& state, const BodyDef& def) {
-    // Allocate first, so that nothing has changed when memory runs out.
-    const std::size_t slots = state.body_ids.size() + 1;
-    const auto reserve_slot = [&](auto& array) {  // doubles, for amortised O(1)
-        if (array.capacity() < slots) array.reserve(2 * slots);
-    };
-    reserve_slot(state.bodies.traits);
-    reserve_slot(state.bodies.motion);
-    reserve_slot(state.bodies.forces);
-    reserve_slot(state.awake);
-    reserve_slot(state.asleep);
+/// Adds a body after reserve_body(). `shape` is that of the body without colliders.
+BodyId make_body(WorldState& state, const BodyDef& def, const BodyShape& shape) {
     const BodyId id = state.body_ids.add();
     state.bodies.resize(state.body_ids.size());
     dynamics::BodyTraits traits;
@@ -84,7 +47,7 @@ BodyId make_body(WorldState& state, const BodyDef& def) {
     const std::span<const std::uint32_t> one(&id.index, 1);
     if (traits.motion_state == MotionState::Awake) insert_ascending(state.awake, one);
     if (traits.motion_state == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
-    update_mass(state, id.index);
+    set_shape(state, id.index, shape);
     if (def.kind != BodyKind::Static) {  // BodyDef gives the velocity of the centre of mass
         state.bodies.motion[id.index].linear_velocity = def.linear_velocity;
         state.bodies.motion[id.index].angular_velocity = def.angular_velocity;
@@ -101,22 +64,21 @@ void unlink_collider(WorldState& state, std::uint32_t index) {
 
 /// Removes a collider from everything except the collider list of its body.
 void drop_collider(WorldState& state, std::uint32_t index) {
-    const Collider& collider = state.colliders[index];
-    broad::AnyStructure& boxes = state.box_sets.of(state.bodies.traits[collider.body].motion_state);
-    boxes.erase(std::span(&index, 1));
-    release_shape(state, collider.shape);
+    release_shape(state, state.colliders[index].shape);
     state.collider_ids.remove(*state.collider_ids.id_at(index));
     mark_edited(state, index);
     state.removed_any = true;
 }
 
-ColliderId make_collider(WorldState& state, std::uint32_t body, const Shape& shape, const ColliderDef& def) {
-    const std::uint32_t shared = share_shape(state, shape);
+/// Adds a collider after reserve_collider(). `shared` is its shape; `shape` that of the body with it.
+ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t shared, const ColliderDef& def,
+                         const BodyShape& shape) {
     const ColliderId id = state.collider_ids.add();
     const std::size_t slots = state.collider_ids.size();
     state.colliders.resize(slots);
     state.boxes.resize(slots);
     state.changes.resize(slots, 0);
+    state.set_of.resize(slots, 0);
     Collider& collider = state.colliders[id.index];
     collider = {};
     collider.body = body;
@@ -132,81 +94,121 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, const Shape& sha
     while (*link != no_index) link = &state.colliders[*link].next;
     *link = id.index;
     const LocalPose frame_before = traits.principal;
-    update_mass(state, body);
-    state.boxes[id.index] = speculative_box(state, id.index, 0, 0);
-    const broad::Move move{id.index, state.boxes[id.index]};
-    broad::AnyStructure& boxes = state.box_sets.of(traits.motion_state);
-    boxes.insert(std::span(&move, 1));
-    mark_edited(state, id.index);
+    set_shape(state, body, shape);
+    update_box(state, id.index);
     if (!(frame_before == traits.principal)) update_boxes(state, body);
     return id;
+}
+
+/// The body of a definition, without colliders.
+BodyEdit edit_of(const BodyDef& def) {
+    BodyEdit edit;
+    edit.kind = def.kind;
+    edit.mass_given = def.mass.has_value();
+    if (def.mass) edit.mass = *def.mass;
+    return edit;
 }
 
 }  // namespace
 
 Result<BodyId> World::add_body(const BodyDef& def) {
-    if (auto checked = check_def(def); !checked) return checked.error();
-    if (state_->stepping) return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
-    try {
-        return make_body(*state_, def);
-    } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::add_body", "out of memory for a body", ""};
-    }
+    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+        if (auto checked = check(def); !checked) return checked.error();
+        if (state_->stepping)
+            return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
+        const auto shape =
+            checked_shape_of(*state_, edit_of(def), {def.position, normalized(def.rotation)}, "BodyDef: ");
+        if (!shape) return shape.error();
+        reserve_body(*state_);
+        return make_body(*state_, def, *shape);
+    });
 }
 
 Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider) {
-    if (auto checked = check_collider(def.kind, shape, collider); !checked) return checked.error();
-    const auto body = add_body(def);
-    if (!body) return body;
-    if (auto added = add_collider(*body, shape, collider); !added) {
-        static_cast<void>(remove_body(*body));
-        return added.error();
-    }
-    // The collider may have moved the centre of mass; BodyDef gives the velocity of the new one.
-    if (def.kind != BodyKind::Static) state_->bodies.motion[body->index].linear_velocity = def.linear_velocity;
-    if (!def.awake) std::erase(state_->bodies_to_wake, body->index);
-    return body;
+    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+        WorldState& state = *state_;
+        if (auto checked = check_collider(def.kind, shape, collider); !checked) return checked.error();
+        if (auto checked = check(def); !checked) return checked.error();
+        if (state.stepping) return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
+        const Pose pose{def.position, normalized(def.rotation)};
+        BodyEdit edit = edit_of(def);
+        const auto bare = checked_shape_of(state, edit, pose, "BodyDef: ");
+        if (!bare) return bare.error();
+        edit.added = &shape;
+        edit.added_def = &collider;
+        const auto complete = checked_shape_of(state, edit, pose, "World::add_body: ");
+        if (!complete) return complete.error();
+        reserve_body(state);
+        reserve_collider(state);
+        reserve_wakes(state, 1);
+        const std::uint32_t shared = share_shape(state, shape);
+        const BodyId body = make_body(state, def, *bare);
+        if (def.awake) request_wake(state, body.index);
+        make_collider(state, body.index, shared, collider, *complete);
+        // The collider may have moved the centre of mass; BodyDef gives the velocity of the new one.
+        if (def.kind != BodyKind::Static) state.bodies.motion[body.index].linear_velocity = def.linear_velocity;
+        return body;
+    });
 }
 
 Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const ColliderDef& def) {
-    if (!contains(body)) return stale_id("World::add_collider");
-    const BodyKind kind = state_->bodies.traits[body.index].kind;
-    if (auto checked = check_collider(kind, shape, def); !checked) return checked.error();
-    try {
-        request_wake(*state_, body.index);
-        return make_collider(*state_, body.index, shape, def);
-    } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::add_collider", "out of memory for a collider", ""};
-    }
+    return guarded(*state_, "add_collider", [&]() -> Result<ColliderId> {
+        WorldState& state = *state_;
+        if (!contains(body)) return stale_id("World::add_collider");
+        const dynamics::BodyTraits& traits = state.bodies.traits[body.index];
+        if (auto checked = check_collider(traits.kind, shape, def); !checked) return checked.error();
+        BodyEdit edit = fase::edit_of(state, body.index);
+        edit.added = &shape;
+        edit.added_def = &def;
+        const Pose pose = body_pose(traits, state.bodies.motion[body.index]);
+        const auto complete = checked_shape_of(state, edit, pose, "World::add_collider: ");
+        if (!complete) return complete.error();
+        reserve_collider(state);
+        reserve_wakes(state, 1);
+        const std::uint32_t shared = share_shape(state, shape);
+        request_wake(state, body.index);
+        return make_collider(state, body.index, shared, def, *complete);
+    });
 }
 
 Result<void> World::remove_collider(ColliderId collider) {
-    if (!contains(collider)) return stale_id("World::remove_collider");
-    const std::uint32_t body = state_->colliders[collider.index].body;
-    request_wake(*state_, body);
-    unlink_collider(*state_, collider.index);
-    drop_collider(*state_, collider.index);
-    update_mass(*state_, body);
-    update_boxes(*state_, body);
-    return {};
+    return guarded(*state_, "remove_collider", [&]() -> Result<void> {
+        WorldState& state = *state_;
+        if (!contains(collider)) return stale_id("World::remove_collider");
+        const std::uint32_t body = state.colliders[collider.index].body;
+        BodyEdit edit = fase::edit_of(state, body);
+        edit.removed = collider.index;
+        const Pose pose = body_pose(state.bodies.traits[body], state.bodies.motion[body]);
+        const auto rest = checked_shape_of(state, edit, pose, "World::remove_collider: ");
+        if (!rest) return rest.error();
+        reserve_wakes(state, 1);
+        request_wake(state, body);
+        unlink_collider(state, collider.index);
+        drop_collider(state, collider.index);
+        set_shape(state, body, *rest);
+        update_boxes(state, body);
+        return {};
+    });
 }
 
 Result<void> World::remove_body(BodyId body) {
-    if (!contains(body)) return stale_id("World::remove_body");
-    WorldState& state = *state_;
-    for (std::uint32_t c = state.bodies.traits[body.index].first_collider; c != no_index;) {
-        const std::uint32_t next = state.colliders[c].next;
-        drop_collider(state, c);
-        c = next;
-    }
-    const std::span<const std::uint32_t> one(&body.index, 1);
-    erase_ascending(state.awake, one);
-    state.asleep.remove(one);
-    std::erase(state.bodies_to_wake, body.index);
-    state.exclusions.remove_all_of(body.index);
-    state.bodies.traits[body.index] = {};
-    state.body_ids.remove(body);
-    return {};
+    return guarded(*state_, "remove_body", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::remove_body");
+        WorldState& state = *state_;
+        for (std::uint32_t c = state.bodies.traits[body.index].first_collider; c != no_index;) {
+            const std::uint32_t next = state.colliders[c].next;
+            drop_collider(state, c);
+            c = next;
+        }
+        const std::span<const std::uint32_t> one(&body.index, 1);
+        erase_ascending(state.awake, one);
+        state.asleep.remove(one);
+        std::erase(state.bodies_to_wake, body.index);
+        state.exclusions.remove_all_of(body.index);
+        state.bodies.traits[body.index] = {};
+        state.body_ids.remove(body);
+        return {};
+    });
 }
 
 }  // namespace fase

@@ -51,7 +51,8 @@ struct BodyState {
     BodyId id;
     BodyKind kind = BodyKind::Dynamic;
     bool awake = true;  ///< always false for static bodies
-    /// A step made a number infinite or NaN: the body is at its last valid pose and takes no part in the simulation.
+    /// A step made a number infinite or NaN, or moved the body out of the world (1e7 m): it is at its last valid pose
+    /// and takes no part in the simulation.
     bool quarantined = false;
     Pose pose;             ///< of the body's frame
     Vec3d centre;          ///< of mass, world

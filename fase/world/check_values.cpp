@@ -1,10 +1,33 @@
 /// Checks of numbers that a world receives.
+#include "fase/world/check_values.hpp"
+
 #include <cmath>
 
 #include "fase/core/detail/text.hpp"
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
+
+Result<void> check_number(float value, float min, float max, const std::string& where) {
+    if (value >= min && value <= max) return {};
+    return refused(where, detail::text_of(value), detail::text_of(min) + " to " + detail::text_of(max));
+}
+
+Result<void> check_vector(Vec3 value, float max, const std::string& where) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (auto checked = check_number(value[axis], -max, max, where); !checked) return checked;
+    return {};
+}
+
+bool is_in_world(Vec3d p) {
+    const auto within = [](double v) { return v >= -limits::coordinate && v <= limits::coordinate; };
+    return within(p.x) && within(p.y) && within(p.z);
+}
+
+Result<void> check_position(Vec3d p, const std::string& where) {
+    if (is_in_world(p)) return {};
+    return refused(where, "a coordinate that is not finite or beyond 1e7 m", "-1e7 to 1e7 m");
+}
 
 Result<Quat> check_rotation(Quat q, const std::string& where) {
     const float length = std::sqrt(length_squared(q));
@@ -13,20 +36,64 @@ Result<Quat> check_rotation(Quat q, const std::string& where) {
     return normalized(q);
 }
 
-Result<void> check_number(float value, float min, const std::string& where) {
-    if (std::isfinite(value) && value >= min) return {};
-    return refused(where, detail::text_of(value), min == 0 ? "a number of 0 or more" : "a finite number");
+Result<void> check_velocity(Vec3 linear, Vec3 angular, const std::string& where) {
+    const auto within = [](Vec3 v, float max) { return length_squared(to_double(v)) <= double(max) * double(max); };
+    if (!within(linear, limits::speed))
+        return refused(where + "linear_velocity",
+                       detail::text_of(std::sqrt(length_squared(to_double(linear)))) + " m/s", "at most 1e7 m/s");
+    if (!within(angular, limits::spin))
+        return refused(where + "angular_velocity",
+                       detail::text_of(std::sqrt(length_squared(to_double(angular)))) + " rad/s", "at most 1e6 rad/s");
+    return {};
 }
 
-Result<void> check_position(Vec3d p, const std::string& where) {
-    const auto within = [](double v) { return v >= -max_coordinate && v <= max_coordinate; };
-    if (within(p.x) && within(p.y) && within(p.z)) return {};
-    return refused(where, "a coordinate that is not finite or beyond 1e7 m", "-1e7 to 1e7 m");
+Result<void> check_combined_mass(const MassProperties& mass, Vec3 moments, const std::string& where) {
+    if (mass.mass == 0 && moments == Vec3{} && mass.centre == Vec3{}) return {};
+    if (auto r = check_number(mass.mass, limits::min_mass, limits::max_mass, where + "mass"); !r) return r;
+    if (auto r = check_vector(mass.centre, limits::offset, where + "mass: centre"); !r) return r;
+    for (int axis = 0; axis < 3; ++axis)
+        if (auto r = check_number(moments[axis], limits::min_moment, limits::max_moment, where + "mass: inertia"); !r)
+            return r;
+    return {};
+}
+
+Result<void> check_mass(const MassProperties& mass, const std::string& where) {
+    if (auto checked = check(mass); !checked) {
+        Error error = checked.error();
+        error.where = where + "mass: " + error.where;
+        return error;
+    }
+    return check_combined_mass(mass, principal(mass.inertia).moments, where);
 }
 
 Result<void> check(const Material& material) {
-    if (auto r = check_number(material.friction, 0, "Material.friction"); !r) return r;
-    return check_number(material.restitution, 0, "Material.restitution");
+    if (auto r = check_number(material.friction, 0, limits::friction, "Material.friction"); !r) return r;
+    if (auto r = check_number(material.restitution, 0, limits::restitution, "Material.restitution"); !r) return r;
+    for (const CombineMode mode : {material.friction_combine, material.restitution_combine})
+        if (mode > CombineMode::Average) return refused("Material", "an unknown combine mode", "a CombineMode");
+    return {};
+}
+
+Result<void> check(const BodyDef& def) {
+    if (def.kind > BodyKind::Dynamic) return refused("BodyDef.kind", "an unknown kind", "a BodyKind");
+    if (auto r = check_position(def.position, "BodyDef.position"); !r) return r;
+    if (auto rotation = check_rotation(def.rotation, "BodyDef.rotation"); !rotation) return rotation.error();
+    if (auto r = check_velocity(def.linear_velocity, def.angular_velocity, "BodyDef."); !r) return r;
+    if (auto r = check_number(def.linear_damping, 0, limits::damping, "BodyDef.linear_damping"); !r) return r;
+    if (auto r = check_number(def.angular_damping, 0, limits::damping, "BodyDef.angular_damping"); !r) return r;
+    if (auto r =
+            check_number(def.gravity_scale, -limits::gravity_scale, limits::gravity_scale, "BodyDef.gravity_scale");
+        !r)
+        return r;
+    return def.mass ? check_mass(*def.mass, "BodyDef.") : Result<void>();
+}
+
+Result<void> check(const ColliderDef& def) {
+    if (auto r = check_vector(def.pose.position, limits::offset, "ColliderDef.pose.position"); !r) return r;
+    if (auto rotation = check_rotation(def.pose.rotation, "ColliderDef.pose.rotation"); !rotation)
+        return rotation.error();
+    if (auto r = check_number(def.density, 0, limits::density, "ColliderDef.density"); !r) return r;
+    return check(def.material);
 }
 
 std::uint8_t bits_of(AxisLocks locks) {

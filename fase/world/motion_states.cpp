@@ -33,6 +33,8 @@ Aabb speculative_box(const WorldState& state, std::uint32_t index, float seconds
 
 namespace {
 
+std::uint8_t set_number(MotionState state) { return static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(state)); }
+
 /// Moves the boxes of the bodies' colliders from one broad-phase structure to another.
 void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, MotionState from, MotionState to) {
     state.query_boxes.clear();
@@ -41,6 +43,7 @@ void move_boxes(WorldState& state, std::span<const std::uint32_t> bodies, Motion
         for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
             state.query_boxes.push_back({c, state.boxes[c]});
             state.scratch.push_back(c);
+            state.set_of[c] = set_number(to);
             mark_box_changed(state, c);
         }
     state.box_sets.of(from).erase(state.scratch);
@@ -54,6 +57,25 @@ bool is_awake(const WorldState& state, std::uint32_t contact) {
 }
 
 }  // namespace
+
+void apply_edits(WorldState& state) {
+    for (const std::uint32_t c : state.edited_colliders) {
+        const std::uint8_t before = state.set_of[c];
+        const bool exists = state.collider_ids.alive_at(c);
+        const std::uint8_t now = exists ? set_number(state.bodies.traits[state.colliders[c].body].motion_state) : 0;
+        const auto set = [&](std::uint8_t number) -> broad::AnyStructure& {
+            return state.box_sets.of(static_cast<MotionState>(number - 1));
+        };
+        const broad::Move box{c, state.boxes[c]};
+        if (before == now) {
+            if (now != 0) set(now).move(std::span(&box, 1));
+        } else {
+            if (before != 0) set(before).erase(std::span(&c, 1));
+            if (now != 0) set(now).insert(std::span(&box, 1));
+        }
+        state.set_of[c] = now;
+    }
+}
 
 void update_pair_lists(WorldState& state, std::span<const std::uint32_t> bodies) {
     const auto for_each_collider = [&](const auto& f) {
@@ -143,6 +165,7 @@ std::uint32_t add_contact(WorldState& state, broad::Pair pair) {
     contact.generation_a = state.collider_ids.slots()[pair.a].generation;
     contact.generation_b = state.collider_ids.slots()[pair.b].generation;
     contact.sensor = a.sensor || b.sensor;
+    contact.sensor_is_b = b.sensor;
     update_materials(state, index);
     return index;
 }

@@ -42,8 +42,7 @@ void publish_events(WorldState& state) {
         if (now != c.touching) {
             const ContactEvent ids = ids_of(state, c);
             if (c.sensor) {
-                const SensorEvent event =
-                    state.colliders[c.collider_a].sensor ? SensorEvent{ids.a, ids.b} : SensorEvent{ids.b, ids.a};
+                const SensorEvent event = c.sensor_is_b ? SensorEvent{ids.b, ids.a} : SensorEvent{ids.a, ids.b};
                 (now ? events.sensors_begun : events.sensors_ended).push_back(event);
             } else {
                 (now ? events.contacts_begun : events.contacts_ended).push_back(ids);

@@ -124,7 +124,7 @@ Result<void> cast_rays(const World& world, std::span<const Ray> rays, const Quer
         });
         if (!no_memory) return {};
         out.resize(first);
-        return Error{Status::NoMemory, "cast_rays", "out of memory for the search", ""};
+        return out_of_memory("cast_rays");
     });
 }
 

@@ -5,9 +5,35 @@
 
 namespace fase {
 
+namespace {
+
+/// Returns v, scaled to length `max` when it is longer.
+Vec3 limited(Vec3 v, float max, bool& clamped) {
+    const Vec3d exact = to_double(v);
+    const double squared = length_squared(exact);
+    if (squared <= double(max) * double(max)) return v;
+    clamped = true;
+    return to_float(exact * (double(max) / std::sqrt(squared)));
+}
+
+/// Clamps the velocities of all bodies before anything moves. The solver clamps again after forces.
+void limit_speeds(WorldState& state) {
+    state.clamped.clear();
+    for (const std::uint32_t body : state.awake) {
+        dynamics::BodyMotion& motion = state.bodies.motion[body];
+        bool clamped = false;
+        motion.linear_velocity = limited(motion.linear_velocity, state.settings.max_linear_speed, clamped);
+        motion.angular_velocity = limited(motion.angular_velocity, state.settings.max_angular_speed, clamped);
+        if (clamped) state.clamped.push_back(body);
+    }
+}
+
+}  // namespace
+
 void refresh_boxes(WorldState& state, float seconds) {
     wake_requested_islands(state);
-    state.sweep.resize(state.bodies.traits.size(), 0);
+    limit_speeds(state);
+    state.sweep.assign(state.bodies.traits.size(), 0);  // bodies that rest do not keep the sweep of an earlier step
     state.previous_boxes.resize(state.boxes.size());
     parallel_ranges(*state.tasks, state.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -8,12 +8,11 @@ namespace fase {
 
 namespace {
 
-Result<void> check_vector(Vec3 v, const char* where) {
-    if (is_finite(v)) return {};
-    return refused(where, "a number that is not finite", "three finite numbers");
+/// Checks the sum of all forces and torques since the last step.
+Result<void> check_forces(const dynamics::BodyForces& sum, const std::string& where) {
+    if (auto checked = check_vector(sum.force, limits::force, where + ": sum of forces"); !checked) return checked;
+    return check_vector(sum.torque, limits::torque, where + ": sum of torques");
 }
-/// Whether the square of the speed is finite, which holds below about 1e19 m/s.
-bool is_speed(Vec3 v) { return std::isfinite(length_squared(v)); }
 Error not_dynamic(const char* where) {
     return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
 }
@@ -27,6 +26,12 @@ Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::B
 
 }  // namespace
 
+void reserve_pair_moves(WorldState& state) {
+    const std::size_t all = state.active.size() + state.resting.size();
+    state.active.reserve(all);
+    state.resting.reserve(all);
+}
+
 void update_motion_state(WorldState& state, std::uint32_t body) {
     dynamics::BodyTraits& traits = state.bodies.traits[body];
     const dynamics::BodyMotion& motion = state.bodies.motion[body];
@@ -36,20 +41,12 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
                             : moves                            ? MotionState::Awake
                                                                : MotionState::Asleep;
     if (now == traits.motion_state) return;
-    std::vector<broad::Move> boxes;
-    std::vector<std::uint32_t> proxies;
-    for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
-        boxes.push_back({c, state.boxes[c]});
-        proxies.push_back(c);
-    }
-    state.box_sets.of(traits.motion_state).erase(proxies);
     const std::span<const std::uint32_t> one(&body, 1);
     erase_ascending(state.awake, one);
     state.asleep.remove(one);
     traits.motion_state = now;
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
-    state.box_sets.of(now).insert(boxes);
     if (now == MotionState::Awake) insert_ascending(state.awake, one);
     if (now == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
     update_pair_lists(state, one);
@@ -57,262 +54,335 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
 }
 
 Result<void> World::set_settings(const Settings& settings) {
-    if (auto checked = check(settings); !checked) return checked;
-    const bool sleep_ended = state_->settings.sleep && !settings.sleep;
-    state_->settings = settings;
-    if (sleep_ended)
-        for (const std::uint32_t body : state_->asleep.bodies) request_wake(*state_, body);
-    return {};
+    return guarded(*state_, "set_settings", [&]() -> Result<void> {
+        if (auto checked = check(settings); !checked) return checked;
+        const bool sleep_ended = state_->settings.sleep && !settings.sleep;
+        if (sleep_ended) reserve_wakes(*state_, state_->asleep.bodies.size());
+        state_->settings = settings;
+        if (sleep_ended)
+            for (const std::uint32_t body : state_->asleep.bodies) request_wake(*state_, body);
+        return {};
+    });
 }
 
 Result<void> World::set_pose(BodyId body, const Pose& pose) {
-    if (!contains(body)) return stale_id("World::set_pose");
-    if (auto checked = check_position(pose.position, "World::set_pose: position"); !checked) return checked;
-    const auto rotation = check_rotation(pose.rotation, "World::set_pose: rotation");
-    if (!rotation) return rotation.error();
-    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-    const Pose placed = Pose{pose.position, *rotation} * state_->bodies.traits[body.index].principal;
-    motion.position = placed.position;
-    motion.rotation = normalized(placed.rotation);
-    update_boxes(*state_, body.index);
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "set_pose", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_pose");
+        if (auto checked = check_position(pose.position, "World::set_pose: position"); !checked) return checked;
+        const auto rotation = check_rotation(pose.rotation, "World::set_pose: rotation");
+        if (!rotation) return rotation.error();
+        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+        const Pose placed = Pose{pose.position, *rotation} * state_->bodies.traits[body.index].principal;
+        if (auto checked = check_position(placed.position, "World::set_pose: centre of mass"); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        motion.position = placed.position;
+        motion.rotation = normalized(placed.rotation);
+        update_boxes(*state_, body.index);
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
-    if (!contains(body)) return stale_id("World::set_velocity");
-    if (auto checked = check_vector(linear, "World::set_velocity: linear"); !checked) return checked;
-    if (auto checked = check_vector(angular, "World::set_velocity: angular"); !checked) return checked;
-    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-    if (traits.kind == BodyKind::Static)
-        return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
-    if (!is_speed(linear) || !is_speed(angular))
-        return refused("World::set_velocity", "a speed above 1e19", "a smaller speed");
-    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-    motion.linear_velocity = linear;
-    motion.angular_velocity = angular;
-    motion.sleep_time = 0;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "set_velocity", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_velocity");
+        if (auto checked = check_velocity(linear, angular, "World::set_velocity: "); !checked) return checked;
+        const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+        if (traits.kind == BodyKind::Static)
+            return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
+        reserve_wakes(*state_, 1);
+        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+        motion.linear_velocity = linear;
+        motion.angular_velocity = angular;
+        motion.sleep_time = 0;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::move_kinematic(BodyId body, const Pose& target, float seconds) {
-    if (!contains(body)) return stale_id("World::move_kinematic");
-    if (state_->bodies.traits[body.index].kind != BodyKind::Kinematic)
-        return refused("World::move_kinematic", "a body that is not kinematic", "a kinematic one");
-    if (!(seconds > 0 && seconds <= 1))
-        return refused("World::move_kinematic: seconds", detail::text_of(seconds), "above 0, at most 1");
-    if (auto checked = check_position(target.position, "World::move_kinematic: position"); !checked) return checked;
-    const auto rotation = check_rotation(target.rotation, "World::move_kinematic: rotation");
-    if (!rotation) return rotation.error();
-    const dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-    const Pose placed = Pose{target.position, *rotation} * state_->bodies.traits[body.index].principal;
-    Quat turn = normalized(placed.rotation * conjugate(motion.rotation));
-    if (turn.w < 0) turn = {-turn.x, -turn.y, -turn.z, -turn.w};
-    // The rotation q = (axis sin(a/2), cos(a/2)) needs the angular speed a / seconds. a / 2 = atan(tan(a/2)) is
-    // computed by the series of atan, after halving the angle until it is small.
-    const float sine = length(turn.vector());
-    float angle = 0;
-    if (sine > 0) {
-        float s = sine, c = turn.w, scale = 2;
-        while (s > 0.2f * c) {  // halve the angle
-            const float half_c = std::sqrt(0.5f * (1 + c));
-            s = s / (2 * half_c);
-            c = half_c;
-            scale *= 2;
+    return guarded(*state_, "move_kinematic", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::move_kinematic");
+        if (state_->bodies.traits[body.index].kind != BodyKind::Kinematic)
+            return refused("World::move_kinematic", "a body that is not kinematic", "a kinematic one");
+        if (!(seconds > 0 && seconds <= 1))
+            return refused("World::move_kinematic: seconds", detail::text_of(seconds), "above 0, at most 1");
+        if (auto checked = check_position(target.position, "World::move_kinematic: position"); !checked) return checked;
+        const auto rotation = check_rotation(target.rotation, "World::move_kinematic: rotation");
+        if (!rotation) return rotation.error();
+        const dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+        const Pose placed = Pose{target.position, *rotation} * state_->bodies.traits[body.index].principal;
+        Quat turn = normalized(placed.rotation * conjugate(motion.rotation));
+        if (turn.w < 0) turn = {-turn.x, -turn.y, -turn.z, -turn.w};
+        // The rotation q = (axis sin(a/2), cos(a/2)) needs the angular speed a / seconds. a / 2 = atan(tan(a/2)) is
+        // computed by the series of atan, after halving the angle until it is small.
+        const float sine = length(turn.vector());
+        float angle = 0;
+        if (sine > 0) {
+            float s = sine, c = turn.w, scale = 2;
+            while (s > 0.2f * c) {  // halve the angle
+                const float half_c = std::sqrt(0.5f * (1 + c));
+                s = s / (2 * half_c);
+                c = half_c;
+                scale *= 2;
+            }
+            const float t = s / c, t2 = t * t;
+            angle = scale * t * (1 - t2 * (1.0f / 3 - t2 * (1.0f / 5 - t2 * (1.0f / 7))));
         }
-        const float t = s / c, t2 = t * t;
-        angle = scale * t * (1 - t2 * (1.0f / 3 - t2 * (1.0f / 5 - t2 * (1.0f / 7))));
-    }
-    const Vec3 angular = sine > 0 ? turn.vector() * (angle / (sine * seconds)) : Vec3{};
-    return set_velocity(body, to_float(placed.position - motion.position) * (1 / seconds), angular);
+        const Vec3 angular = sine > 0 ? turn.vector() * (angle / (sine * seconds)) : Vec3{};
+        return set_velocity(body, to_float(placed.position - motion.position) * (1 / seconds), angular);
+    });
 }
 
 Result<void> World::set_kind(BodyId body, BodyKind kind) {
-    if (!contains(body)) return stale_id("World::set_kind");
-    if (kind > BodyKind::Dynamic) return refused("World::set_kind", "an unknown kind", "a BodyKind");
-    WorldState& state = *state_;
-    dynamics::BodyTraits& traits = state.bodies.traits[body.index];
-    if (kind == BodyKind::Dynamic)
-        for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
-            if (!state.colliders[c].sensor &&
-                std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
-                return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
-    if (traits.kind == kind) return {};
-    traits.kind = kind;
-    if (kind == BodyKind::Static) {
-        state.bodies.motion[body.index].linear_velocity = {};
-        state.bodies.motion[body.index].angular_velocity = {};
-    }
-    update_mass(state, body.index);
-    update_motion_state(state, body.index);
-    update_boxes(state, body.index);
-    return {};
+    return guarded(*state_, "set_kind", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_kind");
+        if (kind > BodyKind::Dynamic) return refused("World::set_kind", "an unknown kind", "a BodyKind");
+        WorldState& state = *state_;
+        dynamics::BodyTraits& traits = state.bodies.traits[body.index];
+        if (kind == BodyKind::Dynamic)
+            for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
+                if (!state.colliders[c].sensor &&
+                    std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
+                    return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
+        if (traits.kind == kind) return {};
+        BodyEdit edit = edit_of(state, body.index);
+        edit.kind = kind;
+        const Pose pose = body_pose(traits, state.bodies.motion[body.index]);
+        const auto shape = checked_shape_of(state, edit, pose, "World::set_kind: ");
+        if (!shape) return shape.error();
+        reserve_pair_moves(state);
+        traits.kind = kind;
+        state.bodies.forces[body.index] = {};
+        if (kind == BodyKind::Static) {
+            state.bodies.motion[body.index].linear_velocity = {};
+            state.bodies.motion[body.index].angular_velocity = {};
+        }
+        set_shape(state, body.index, *shape);
+        update_motion_state(state, body.index);
+        update_boxes(state, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& mass) {
-    if (!contains(body)) return stale_id("World::set_mass");
-    if (mass)
-        if (auto checked = check(*mass); !checked) {
-            Error error = checked.error();
-            error.where = "World::set_mass: " + error.where;
-            return error;
-        }
-    dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-    traits.mass_given = mass.has_value();
-    if (mass) traits.mass = *mass;
-    const LocalPose frame_before = traits.principal;
-    update_mass(*state_, body.index);
-    if (!(frame_before == traits.principal))
-        update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "set_mass", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_mass");
+        if (mass)
+            if (auto checked = check_mass(*mass, "World::set_mass: "); !checked) return checked;
+        dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+        BodyEdit edit = edit_of(*state_, body.index);
+        edit.mass_given = mass.has_value();
+        if (mass) edit.mass = *mass;
+        const Pose pose = body_pose(traits, state_->bodies.motion[body.index]);
+        const auto shape = checked_shape_of(*state_, edit, pose, "World::set_mass: ");
+        if (!shape) return shape.error();
+        reserve_wakes(*state_, 1);
+        traits.mass_given = mass.has_value();
+        const LocalPose frame_before = traits.principal;
+        set_shape(*state_, body.index, *shape);
+        if (!(frame_before == traits.principal))
+            update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_damping(BodyId body, float linear, float angular) {
-    if (!contains(body)) return stale_id("World::set_damping");
-    if (auto r = check_number(linear, 0, "World::set_damping: linear"); !r) return r;
-    if (auto r = check_number(angular, 0, "World::set_damping: angular"); !r) return r;
-    state_->bodies.traits[body.index].linear_damping = linear;
-    state_->bodies.traits[body.index].angular_damping = angular;
-    return {};
+    return guarded(*state_, "set_damping", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_damping");
+        if (auto r = check_number(linear, 0, limits::damping, "World::set_damping: linear"); !r) return r;
+        if (auto r = check_number(angular, 0, limits::damping, "World::set_damping: angular"); !r) return r;
+        state_->bodies.traits[body.index].linear_damping = linear;
+        state_->bodies.traits[body.index].angular_damping = angular;
+        return {};
+    });
 }
 
 Result<void> World::set_gravity_scale(BodyId body, float scale) {
-    if (!contains(body)) return stale_id("World::set_gravity_scale");
-    if (auto r = check_number(scale, -Aabb::infinity, "World::set_gravity_scale"); !r) return r;
-    state_->bodies.traits[body.index].gravity_scale = scale;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "gravity_scale", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_gravity_scale");
+        if (auto r = check_number(scale, -limits::gravity_scale, limits::gravity_scale, "World::set_gravity_scale"); !r)
+            return r;
+        reserve_wakes(*state_, 1);
+        state_->bodies.traits[body.index].gravity_scale = scale;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_locks(BodyId body, AxisLocks locks) {
-    if (!contains(body)) return stale_id("World::set_locks");
-    state_->bodies.traits[body.index].locks = bits_of(locks);
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "set_locks", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_locks");
+        reserve_wakes(*state_, 1);
+        state_->bodies.traits[body.index].locks = bits_of(locks);
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
-    if (!contains(body)) return stale_id("World::set_can_sleep");
-    state_->bodies.traits[body.index].can_sleep = can_sleep;
-    if (!can_sleep) request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "set_can_sleep", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::set_can_sleep");
+        reserve_wakes(*state_, 1);
+        state_->bodies.traits[body.index].can_sleep = can_sleep;
+        if (!can_sleep) request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::wake(BodyId body) {
-    if (!contains(body)) return stale_id("World::wake");
-    state_->bodies.motion[body.index].sleep_time = 0;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "World::wake", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::wake");
+        reserve_wakes(*state_, 1);
+        state_->bodies.motion[body.index].sleep_time = 0;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::set_material(ColliderId collider, const Material& material) {
-    if (!contains(collider)) return stale_id("World::set_material");
-    if (auto checked = check(material); !checked) return checked;
-    state_->colliders[collider.index].material = material;
-    const auto renew = [&](pairs::PairList& list) {
-        for (std::size_t i = 0; i < list.size(); ++i)
-            if (list.pairs[i].a == collider.index || list.pairs[i].b == collider.index)
-                update_materials(*state_, list.values[i]);
-    };
-    renew(state_->active);
-    renew(state_->resting);
-    request_wake(*state_, state_->colliders[collider.index].body);
-    return {};
+    return guarded(*state_, "set_material", [&]() -> Result<void> {
+        if (!contains(collider)) return stale_id("World::set_material");
+        if (auto checked = check(material); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        state_->colliders[collider.index].material = material;
+        const auto renew = [&](pairs::PairList& list) {
+            for (std::size_t i = 0; i < list.size(); ++i)
+                if (list.pairs[i].a == collider.index || list.pairs[i].b == collider.index)
+                    update_materials(*state_, list.values[i]);
+        };
+        renew(state_->active);
+        renew(state_->resting);
+        request_wake(*state_, state_->colliders[collider.index].body);
+        return {};
+    });
 }
 
 Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter& filter) {
-    if (!contains(collider)) return stale_id("World::set_filter");
-    state_->colliders[collider.index].filter = filter;
-    update_box(*state_, collider.index);
-    request_wake(*state_, state_->colliders[collider.index].body);
-    return {};
+    return guarded(*state_, "set_filter", [&]() -> Result<void> {
+        if (!contains(collider)) return stale_id("World::set_filter");
+        reserve_wakes(*state_, 1);
+        state_->colliders[collider.index].filter = filter;
+        update_box(*state_, collider.index);
+        request_wake(*state_, state_->colliders[collider.index].body);
+        return {};
+    });
 }
 
 Result<void> World::exclude_pair(BodyId a, BodyId b) {
-    if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
-    if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
-    if (!state_->exclusions.add(a.index, b.index)) return {};
-    update_boxes(*state_, a.index);
-    request_wake(*state_, a.index);
-    request_wake(*state_, b.index);
-    return {};
+    return guarded(*state_, "exclude_pair", [&]() -> Result<void> {
+        if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
+        if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
+        reserve_wakes(*state_, 2);
+        if (!state_->exclusions.add(a.index, b.index)) return {};
+        update_boxes(*state_, a.index);
+        request_wake(*state_, a.index);
+        request_wake(*state_, b.index);
+        return {};
+    });
 }
 
 Result<void> World::include_pair(BodyId a, BodyId b) {
-    if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
-    if (!state_->exclusions.remove(a.index, b.index)) return {};
-    update_boxes(*state_, a.index);
-    request_wake(*state_, a.index);
-    request_wake(*state_, b.index);
-    return {};
+    return guarded(*state_, "include_pair", [&]() -> Result<void> {
+        if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
+        reserve_wakes(*state_, 2);
+        if (!state_->exclusions.remove(a.index, b.index)) return {};
+        update_boxes(*state_, a.index);
+        request_wake(*state_, a.index);
+        request_wake(*state_, b.index);
+        return {};
+    });
 }
 
 Result<void> World::apply_force(BodyId body, Vec3 newtons) {
-    if (!contains(body)) return stale_id("World::apply_force");
-    return apply_force_at(body, newtons, state_->bodies.motion[body.index].position);
+    return guarded(*state_, "apply_force", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_force");
+        return apply_force_at(body, newtons, state_->bodies.motion[body.index].position);
+    });
 }
 
 Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
-    if (!contains(body)) return stale_id("World::apply_force");
-    if (auto checked = check_vector(newtons, "World::apply_force: newtons"); !checked) return checked;
-    if (auto checked = check_position(point, "World::apply_force: point"); !checked) return checked;
-    if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_force");
-    const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
-    state_->bodies.forces[body.index].force += newtons;
-    state_->bodies.forces[body.index].torque += cross(arm, newtons);
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "apply_force", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_force");
+        if (auto checked = check_vector(newtons, limits::force, "World::apply_force: newtons"); !checked)
+            return checked;
+        if (auto checked = check_position(point, "World::apply_force: point"); !checked) return checked;
+        if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_force");
+        const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
+        dynamics::BodyForces sum = state_->bodies.forces[body.index];
+        sum.force += newtons;
+        sum.torque += cross(arm, newtons);
+        if (auto checked = check_forces(sum, "World::apply_force"); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        state_->bodies.forces[body.index] = sum;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
-    if (!contains(body)) return stale_id("World::apply_torque");
-    if (auto checked = check_vector(newton_metres, "World::apply_torque"); !checked) return checked;
-    if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
-    state_->bodies.forces[body.index].torque += newton_metres;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "apply_torque", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_torque");
+        if (auto checked = check_vector(newton_metres, limits::torque, "World::apply_torque"); !checked) return checked;
+        if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
+        dynamics::BodyForces sum = state_->bodies.forces[body.index];
+        sum.torque += newton_metres;
+        if (auto checked = check_forces(sum, "World::apply_torque"); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        state_->bodies.forces[body.index] = sum;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::apply_impulse(BodyId body, Vec3 newton_seconds) {
-    if (!contains(body)) return stale_id("World::apply_impulse");
-    return apply_impulse_at(body, newton_seconds, state_->bodies.motion[body.index].position);
+    return guarded(*state_, "apply_impulse", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_impulse");
+        return apply_impulse_at(body, newton_seconds, state_->bodies.motion[body.index].position);
+    });
 }
 
 Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d point) {
-    if (!contains(body)) return stale_id("World::apply_impulse");
-    if (auto checked = check_vector(newton_seconds, "World::apply_impulse: newton_seconds"); !checked) return checked;
-    if (auto checked = check_position(point, "World::apply_impulse: point"); !checked) return checked;
-    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-    if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_impulse");
-    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-    const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
-    const Vec3 angular =
-        motion.angular_velocity +
-        inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
-    if (!is_speed(linear) || !is_speed(angular))
-        return refused("World::apply_impulse", "an impulse that makes the velocity infinite", "a smaller one");
-    motion.linear_velocity = linear;
-    motion.angular_velocity = angular;
-    motion.sleep_time = 0;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "apply_impulse", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_impulse");
+        if (auto checked = check_vector(newton_seconds, limits::force, "World::apply_impulse: newton_seconds");
+            !checked)
+            return checked;
+        if (auto checked = check_position(point, "World::apply_impulse: point"); !checked) return checked;
+        const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+        if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_impulse");
+        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+        const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
+        const Vec3 angular =
+            motion.angular_velocity +
+            inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
+        if (auto checked = check_velocity(linear, angular, "World::apply_impulse: "); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        motion.linear_velocity = linear;
+        motion.angular_velocity = angular;
+        motion.sleep_time = 0;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds) {
-    if (!contains(body)) return stale_id("World::apply_angular_impulse");
-    if (auto checked = check_vector(newton_metre_seconds, "World::apply_angular_impulse"); !checked) return checked;
-    const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-    if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_angular_impulse");
-    dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-    const Vec3 angular = motion.angular_velocity + inverse_inertia_times(traits, motion, newton_metre_seconds);
-    if (!is_speed(angular))
-        return refused("World::apply_angular_impulse", "an impulse that makes the velocity infinite", "a smaller one");
-    motion.angular_velocity = angular;
-    motion.sleep_time = 0;
-    request_wake(*state_, body.index);
-    return {};
+    return guarded(*state_, "angular_impulse", [&]() -> Result<void> {
+        if (!contains(body)) return stale_id("World::apply_angular_impulse");
+        if (auto checked = check_vector(newton_metre_seconds, limits::torque, "World::apply_angular_impulse"); !checked)
+            return checked;
+        const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
+        if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_angular_impulse");
+        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
+        const Vec3 angular = motion.angular_velocity + inverse_inertia_times(traits, motion, newton_metre_seconds);
+        if (auto checked = check_velocity({}, angular, "World::apply_angular_impulse: "); !checked) return checked;
+        reserve_wakes(*state_, 1);
+        motion.angular_velocity = angular;
+        motion.sleep_time = 0;
+        request_wake(*state_, body.index);
+        return {};
+    });
 }
 
 }  // namespace fase

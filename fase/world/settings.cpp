@@ -1,6 +1,7 @@
 /// Range checks of the settings.
 #include "fase/world/settings.hpp"
 #include "fase/core/detail/text.hpp"
+#include "fase/world/check_values.hpp"
 
 #include <cmath>
 
@@ -14,7 +15,9 @@ Error refused(const char* field, const std::string& found, const std::string& ex
 }  // namespace
 
 Result<void> check(const Settings& s) {
-    if (!is_finite(s.gravity)) return refused("gravity", "a number that is not finite", "three finite numbers");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::fabs(s.gravity[axis]) <= limits::acceleration))
+            return refused("gravity", detail::text_of(s.gravity[axis]), "-1e6 to 1e6 m/s²");
     if (!(s.time_step > 0 && s.time_step <= 1))
         return refused("time_step", detail::text_of(s.time_step), "above 0, at most 1");
     if (s.sub_steps < 1 || s.sub_steps > 64) return refused("sub_steps", std::to_string(s.sub_steps), "1 to 64");

@@ -1,34 +1,45 @@
 /// Snapshots and hashes, both generated from one description of the state.
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <new>
+#include <optional>
 
 #include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/text.hpp"
 #include "fase/core/hash.hpp"
+#include "fase/world/detail/check_state.hpp"
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
 namespace {
 
 using dynamics::Contact;
-constexpr std::uint32_t snapshot_version = 1;
+constexpr std::uint32_t snapshot_version = 2;
 constexpr char snapshot_magic[8] = {'F', 'A', 'S', 'E', 'S', 'N', 'A', 'P'};
+constexpr std::size_t head_size = sizeof snapshot_magic + 4 + 8 + 8;
 
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 /// Feeds every number into a hash.
 struct HashArchive {
-    static constexpr bool reads = false;
+    static constexpr bool reads = false, saves = false;
     Hasher hasher;
     template <Number T> void number(T& value) { hasher.add(value); }
     template <class T> void resize(std::vector<T>& v) { hasher.add(v.size()); }
 };
-/// Writes every number as little-endian bytes.
+/// Counts the bytes that WriteArchive writes.
+struct SizeArchive {
+    static constexpr bool reads = false, saves = true;
+    std::size_t size = 0;
+    template <Number T> void number(T&) { size += sizeof(T); }
+    template <class T> void resize(std::vector<T>&) { size += sizeof(std::uint64_t); }
+};
+/// Writes every number as little-endian bytes, into memory that is large enough.
 struct WriteArchive {
-    static constexpr bool reads = false;
-    std::vector<std::byte> bytes;
+    static constexpr bool reads = false, saves = true;
+    std::byte* to = nullptr;
     template <Number T> void number(T& value) {
         std::uint64_t word = 0;
         if constexpr (std::is_same_v<T, double>) {
@@ -38,17 +49,25 @@ struct WriteArchive {
         } else {
             word = static_cast<std::uint64_t>(value);
         }
-        for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::byte>(word >> (8 * i)));
+        for (std::size_t i = 0; i < sizeof(T); ++i) *to++ = static_cast<std::byte>(word >> (8 * i));
     }
     template <class T> void resize(std::vector<T>& v) {
         std::uint64_t size = v.size();
         number(size);
     }
 };
-/// Reads what WriteArchive wrote. A read past the end, or a count larger than the rest of the bytes, sets `failed`;
-/// later reads then do nothing.
+/// Returns the bytes that WriteArchive writes for the smallest value of a type.
+template <class T> std::size_t smallest_size() {
+    T value{};
+    if constexpr (std::is_same_v<T, SharedShape>) value.shape = HalfSpace{};
+    SizeArchive archive;
+    describe(archive, value);
+    return archive.size;
+}
+/// Reads what WriteArchive wrote. A read past the end, or a count of more elements than the rest of the bytes can hold,
+/// sets `failed`; later reads then do nothing.
 struct ReadArchive {
-    static constexpr bool reads = true;
+    static constexpr bool reads = true, saves = true;
     std::span<const std::byte> bytes;
     std::size_t at = 0;
     bool failed = false;
@@ -66,6 +85,7 @@ struct ReadArchive {
         } else if constexpr (std::is_same_v<T, float>) {
             value = std::bit_cast<float>(static_cast<std::uint32_t>(word));
         } else if constexpr (std::is_same_v<T, bool>) {
+            if (word > 1) failed = true;
             value = word != 0;
         } else {
             value = static_cast<T>(word);
@@ -74,7 +94,7 @@ struct ReadArchive {
     template <class T> void resize(std::vector<T>& v) {
         std::uint64_t size = 0;
         number(size);
-        if (failed || size > bytes.size() - at) {  // every element takes at least one byte
+        if (failed || size > (bytes.size() - at) / smallest_size<T>()) {
             failed = true;
             return;
         }
@@ -109,10 +129,6 @@ template <class A> void describe(A& a, MassProperties& m) {
 template <class A> void describe(A& a, Material& m) {
     all(a, m.friction, m.restitution, m.friction_combine, m.restitution_combine);
 }
-template <class A, class Tag> void describe(A& a, Id<Tag>& id) {
-    all(a, id.index, id.generation);
-    if constexpr (!std::is_same_v<A, HashArchive>) a.number(id.owner);
-}
 template <class A> void describe(A& a, Settings& s) {
     all(a, s.gravity, s.time_step, s.sub_steps, s.contact_frequency, s.contact_damping_ratio, s.push_out_speed,
         s.restitution_threshold, s.speculative_distance, s.linear_slop, s.contact_reuse_distance, s.box_margin, s.sleep,
@@ -133,11 +149,12 @@ template <class A> void describe(A& a, Collider& c) {
         c.filter.mask, c.filter.group, c.user);
 }
 template <class A> void describe(A& a, Contact& c) {
-    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.generation_a, c.generation_b, c.count, c.sensor,
-        c.touching, c.reusable, c.pushes, c.a_rolls, c.b_rolls, c.friction, c.restitution, c.position_a, c.position_b,
-        c.rotation_a, c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b,
-        c.first_separation, c.normal, c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse,
-        c.total_impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
+    if constexpr (A::saves) all(a, c.generation_a, c.generation_b);
+    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.count, c.sensor, c.sensor_is_b, c.touching, c.reusable,
+        c.pushes, c.a_rolls, c.b_rolls, c.friction, c.restitution, c.position_a, c.position_b, c.rotation_a,
+        c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b, c.first_separation, c.normal,
+        c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse, c.total_impulse,
+        c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
 }
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
@@ -153,9 +170,13 @@ template <class A> void describe(A& a, SharedShape& s) {
     all(a, kind, s.users, s.outer_radius, s.inner_radius, s.key);
     if constexpr (A::reads) {
         std::uint32_t i = 0;
+        bool known = false;
         for_each_shape([&]<class S>() {
-            if (i++ == kind) s.shape = S{};
+            if (i++ != kind) return;
+            s.shape = S{};
+            known = true;
         });
+        if (!known) a.failed = true;
     }
     std::visit([&](auto& shape) { describe(a, shape); }, s.shape);
 }
@@ -166,20 +187,27 @@ template <class A, class T> void describe(A& a, std::vector<T>& v) {
 }
 template <class A, class... T> void all(A& a, T&... values) { (describe(a, values), ...); }
 
+/// Generations are saved, but not hashed: a world that went back to a snapshot has issued more ids than one that did
+/// not, and is equal otherwise.
 template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
-    std::vector<std::uint16_t> generations;
     std::vector<std::uint8_t> alive;
     std::vector<std::uint32_t> free = pool.free_list();
-    for (const auto& slot : pool.slots()) {
-        generations.push_back(slot.generation);
-        alive.push_back(slot.alive ? 1 : 0);
-    }
-    all(a, generations, alive, free);
-    if constexpr (A::reads) {
-        std::vector<typename IdPool<Tag>::Slot> slots;
-        for (std::size_t i = 0; i < generations.size() && i < alive.size(); ++i)
-            slots.push_back({generations[i], alive[i] != 0});
-        pool.restore(std::move(slots), std::move(free));
+    for (const auto& slot : pool.slots()) alive.push_back(slot.alive ? 1 : 0);
+    all(a, alive, free);
+    if constexpr (A::saves) {
+        std::vector<std::uint16_t> generations, newest = pool.newest();
+        for (const auto& slot : pool.slots()) generations.push_back(slot.generation);
+        std::uint16_t owner = pool.owner();
+        all(a, generations, newest, owner);
+        if constexpr (A::reads) {
+            a.failed = a.failed || generations.size() != alive.size();
+            if (a.failed) return;
+            std::vector<typename IdPool<Tag>::Slot> slots;
+            slots.reserve(alive.size());
+            for (std::size_t i = 0; i < alive.size(); ++i) slots.push_back({generations[i], alive[i] != 0});
+            pool = IdPool<Tag>(owner);
+            a.failed = !pool.restore(std::move(slots), std::move(free), std::move(newest));
+        }
     }
 }
 
@@ -193,56 +221,11 @@ template <class A> void describe(A& a, WorldState& s) {
     describe(a, excluded);
     if constexpr (A::reads) {
         s.exclusions.clear();
+        for (std::size_t i = 0; i < excluded.size(); ++i)
+            if (!(excluded[i].a < excluded[i].b) || (i != 0 && !(excluded[i - 1] < excluded[i]))) a.failed = true;
+        if (a.failed) return;  // unsorted pairs would take quadratic time
         for (const broad::Pair pair : excluded) s.exclusions.add(pair.a, pair.b);
     }
-}
-
-/// Whether all indices and lists are valid: the bytes may come from any source.
-bool is_consistent(const WorldState& s) {
-    const std::size_t bodies = s.body_ids.size(), colliders = s.collider_ids.size();
-    if (s.bodies.traits.size() != bodies || s.bodies.motion.size() != bodies || s.bodies.forces.size() != bodies ||
-        s.colliders.size() != colliders || s.boxes.size() != colliders || s.changes.size() != colliders)
-        return false;
-    const auto body_lists_good = [&](const std::vector<std::uint32_t>& list) {
-        for (std::size_t i = 0; i < list.size(); ++i)
-            if (!s.body_ids.alive_at(list[i]) || (i != 0 && list[i - 1] >= list[i])) return false;
-        return true;
-    };
-    if (!body_lists_good(s.awake) || !body_lists_good(s.asleep.bodies)) return false;
-    std::vector<std::uint32_t> chained(colliders, 0);
-    for (std::uint32_t body = 0; body < bodies; ++body) {
-        const dynamics::BodyTraits& traits = s.bodies.traits[body];
-        if (traits.kind > BodyKind::Dynamic || traits.motion_state > MotionState::Awake) return false;
-        const std::uint32_t island = s.bodies.motion[body].island;
-        if (island != no_index && island >= bodies) return false;
-        if (!s.body_ids.alive_at(body)) continue;
-        for (std::uint32_t c = traits.first_collider; c != no_index; c = s.colliders[c].next) {
-            if (!s.collider_ids.alive_at(c) || s.colliders[c].body != body || chained[c]++ != 0) return false;
-        }
-    }
-    for (std::uint32_t c = 0; c < colliders; ++c)
-        if (s.collider_ids.alive_at(c) && (s.colliders[c].shape >= s.shapes.size() || chained[c] != 1)) return false;
-    for (const SharedShape& shared : s.shapes)
-        if (shared.users != 0 && !check(shared.shape)) return false;
-    for (const pairs::PairList* list : {&s.active, &s.resting}) {
-        if (list->pairs.size() != list->values.size()) return false;
-        for (std::size_t i = 0; i < list->size(); ++i) {
-            if (list->pairs[i].a >= colliders || list->pairs[i].b >= colliders || list->values[i] >= s.contacts.size())
-                return false;
-            const Contact& c = s.contacts[list->values[i]];
-            if (c.collider_a != list->pairs[i].a || c.collider_b != list->pairs[i].b || c.body_a >= bodies ||
-                c.body_b >= bodies || c.count > 4)
-                return false;
-        }
-    }
-    const auto all_below = [](const std::vector<std::uint32_t>& list, std::size_t size) {
-        for (const std::uint32_t i : list)
-            if (i >= size) return false;
-        return true;
-    };
-    return all_below(s.free_shapes, s.shapes.size()) && all_below(s.free_contacts, s.contacts.size()) &&
-           all_below(s.edited_colliders, colliders) && all_below(s.bodies_to_wake, bodies) &&
-           all_below(s.body_ids.free_list(), bodies) && all_below(s.collider_ids.free_list(), colliders);
 }
 
 Error not_a_snapshot(std::size_t at, std::string found, std::string expected) {
@@ -266,20 +249,46 @@ std::uint64_t World::hash() const {
 }
 
 std::vector<std::byte> World::snapshot() const {
-    WriteArchive payload;
-    describe(payload, *state_);
-    WriteArchive out;
-    for (char letter : snapshot_magic) out.number(letter);
-    std::uint32_t version = snapshot_version;
-    std::uint64_t size = payload.bytes.size(), sum = checksum(payload.bytes);
-    out.number(version);
-    out.number(size);
-    out.number(sum);
-    out.bytes.insert(out.bytes.end(), payload.bytes.begin(), payload.bytes.end());
-    return std::move(out.bytes);
+    if (state_->broken) return {};
+    try {
+        SizeArchive measure;
+        describe(measure, *state_);
+        std::vector<std::byte> bytes(head_size + measure.size);
+        WriteArchive payload{bytes.data() + head_size};
+        describe(payload, *state_);
+        WriteArchive head{bytes.data()};
+        for (char letter : snapshot_magic) head.number(letter);
+        std::uint32_t version = snapshot_version;
+        std::uint64_t size = measure.size, sum = checksum(std::span(bytes).subspan(head_size));
+        head.number(version);
+        head.number(size);
+        head.number(sum);
+        return bytes;
+    } catch (const std::bad_alloc&) {
+        return {};
+    }
 }
 
-Result<void> World::restore(std::span<const std::byte> snapshot) {
+namespace {
+
+/// Gives contacts the new generations of their colliders.
+template <class Renewed> void renew_contacts(WorldState& state, const std::vector<Renewed>& renewed) {
+    if (renewed.empty()) return;
+    std::vector<const Renewed*> of(state.colliders.size(), nullptr);
+    for (const Renewed& slot : renewed) of[slot.index] = &slot;
+    for (const pairs::PairList* list : {&state.active, &state.resting})
+        for (const std::uint32_t index : list->values) {
+            Contact& c = state.contacts[index];
+            const auto renew = [&](std::uint32_t collider, std::uint16_t& generation) {
+                if (of[collider] != nullptr && of[collider]->before == generation) generation = of[collider]->now;
+            };
+            renew(c.collider_a, c.generation_a);
+            renew(c.collider_b, c.generation_b);
+        }
+}
+
+/// Checks the head of a snapshot and returns the bytes of its state.
+Result<std::span<const std::byte>> payload_of(std::span<const std::byte> snapshot) {
     ReadArchive head{snapshot};
     char magic[8] = {};
     for (char& letter : magic) head.number(letter);
@@ -293,37 +302,86 @@ Result<void> World::restore(std::span<const std::byte> snapshot) {
     if (head.failed) return not_a_snapshot(snapshot.size(), "an incomplete head", "a complete snapshot");
     if (version != snapshot_version)
         return not_a_snapshot(8, "version " + std::to_string(version), "version " + std::to_string(snapshot_version));
-    const std::span<const std::byte> payload = snapshot.subspan(head.at);
+    const std::span<const std::byte> payload = snapshot.subspan(head_size);
     if (payload.size() != size)
         return not_a_snapshot(12, std::to_string(payload.size()) + " bytes of state", std::to_string(size));
     if (checksum(payload) != sum) return not_a_snapshot(20, "a wrong checksum", "unchanged bytes");
+    return payload;
+}
+
+/// Builds what a snapshot does not hold: sets of boxes, links of sleepers, keys of shapes, memory for edits.
+void complete(WorldState& next) {
+    next.box_sets = make_box_sets(next.structure);
+    next.set_of.assign(next.colliders.size(), 0);
+    for (std::uint32_t c = 0; c < next.collider_ids.size(); ++c) {
+        if (!next.collider_ids.alive_at(c)) continue;
+        const broad::Move move{c, next.boxes[c]};
+        const MotionState motion_state = next.bodies.traits[next.colliders[c].body].motion_state;
+        next.box_sets.of(motion_state).insert(std::span(&move, 1));
+        next.set_of[c] = static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(motion_state));
+    }
+    next.box_sets.commit_as_they_are();
+    next.awake.reserve(next.bodies.traits.size());
+    next.asleep.reserve(next.bodies.traits.size());
+    next.asleep.relink(next.bodies.motion);
+    next.edited_colliders.reserve(next.colliders.size());
+    next.free_shapes.reserve(next.shapes.size());
+    measure_asleep_overhang(next, next.asleep.bodies);
+    for (std::uint32_t i = 0; i < next.shapes.size(); ++i)
+        if (next.shapes[i].users != 0) next.shape_of_key.emplace(next.shapes[i].key, i);
+}
+
+/// Gives the pool of a snapshot the number of the restoring world. Returns the slots whose id got a new generation;
+/// nullopt when a slot has none left.
+template <class Renewed, class Tag>
+std::optional<std::vector<Renewed>> take_over(IdPool<Tag>& next, const IdPool<Tag>& before) {
+    IdPool<Tag> pool(before.owner());
+    const std::vector<typename IdPool<Tag>::Slot> old = next.slots();
+    if (!pool.restore(next.slots(), next.free_list(), next.newest()) ||
+        !pool.continue_after(before, next.owner() != before.owner()))
+        return std::nullopt;
+    std::vector<Renewed> renewed;
+    for (std::uint32_t i = 0; i < old.size(); ++i)
+        if (old[i].generation != pool.slots()[i].generation)
+            renewed.push_back({i, old[i].generation, pool.slots()[i].generation});
+    next = std::move(pool);
+    return renewed;
+}
+
+}  // namespace
+
+Result<IdMap> World::restore(std::span<const std::byte> snapshot) {
     try {
+        const auto payload = payload_of(snapshot);
+        if (!payload) return payload.error();
         auto next = std::make_unique<WorldState>();
-        next->body_ids = IdPool<BodyTag>(state_->body_ids.owner());
-        next->collider_ids = IdPool<ColliderTag>(state_->collider_ids.owner());
-        ReadArchive archive{payload};
+        ReadArchive archive{*payload};
         describe(archive, *next);
-        if (archive.failed || archive.at != payload.size() || !check(next->settings) || !is_consistent(*next))
-            return not_a_snapshot(28 + archive.at, "an inconsistent state", "a consistent one");
+        const std::string_view wrong =
+            archive.failed || archive.at != payload->size() ? "an incomplete state" : wrong_part(*next);
+        if (!wrong.empty()) return not_a_snapshot(head_size + archive.at, std::string(wrong), "a consistent state");
+        IdMap map;
+        map.from_ = next->body_ids.owner();
+        map.to_ = state_->body_ids.owner();
+        auto bodies = take_over<IdMap::Renewed>(next->body_ids, state_->body_ids);
+        auto colliders = take_over<IdMap::Renewed>(next->collider_ids, state_->collider_ids);
+        if (!bodies || !colliders)
+            return Error{Status::Capacity, "World::restore", "found a slot that has issued 65,535 ids; expected fewer",
+                         "restore into a new world"};
+        map.bodies_ = std::move(*bodies);
+        map.colliders_ = std::move(*colliders);
+        renew_contacts(*next, map.colliders_);
+        next->structure = state_->structure;
+        next->solver.reference = state_->solver.reference;
+        complete(*next);
         next->own_tasks = std::move(state_->own_tasks);
         next->tasks = state_->tasks;
-        next->solver.reference = state_->solver.reference;
-        next->box_sets = std::move(state_->box_sets);
-        next->box_sets.clear();
-        for (std::uint32_t c = 0; c < next->collider_ids.size(); ++c) {
-            if (!next->collider_ids.alive_at(c)) continue;
-            const broad::Move move{c, next->boxes[c]};
-            next->box_sets.of(next->bodies.traits[next->colliders[c].body].motion_state).insert(std::span(&move, 1));
-        }
-        next->box_sets.commit_as_they_are();
-        next->asleep.relink(next->bodies.motion);
-        measure_asleep_overhang(*next, next->asleep.bodies);
-        for (std::uint32_t i = 0; i < next->shapes.size(); ++i)
-            if (next->shapes[i].users != 0) next->shape_of_key.emplace(next->shapes[i].key, i);
         state_ = std::move(next);
-        return {};
+        return map;
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::restore", "out of memory for the snapshot", ""};
+        return out_of_memory("World::restore");
+    } catch (const std::length_error&) {
+        return out_of_memory("World::restore");
     }
 }
 

@@ -1,4 +1,7 @@
 /// Stages "solve" and "finish": runs the solver on the awake bodies, then stores their new motion.
+#include <algorithm>
+
+#include "fase/world/check_values.hpp"
 #include "fase/world/detail/state.hpp"
 
 namespace fase {
@@ -23,10 +26,8 @@ dynamics::SolverSettings solver_settings(const WorldState& state, float seconds)
 }
 
 bool is_valid(const BodyMotion& motion) {
-    constexpr double limit = 1e8;
-    const Vec3d p = motion.position;
     return is_finite(motion.linear_velocity) && is_finite(motion.angular_velocity) && is_finite(motion.rotation) &&
-           p.x > -limit && p.x < limit && p.y > -limit && p.y < limit && p.z > -limit && p.z < limit;
+           is_in_world(motion.position);
 }
 
 /// Stops a body at its last valid pose and excludes it from the simulation.
@@ -36,8 +37,7 @@ void quarantine(WorldState& state, std::uint32_t body) {
     state.bodies.motion[body].angular_velocity = {};
     state.bodies.motion[body].island = body;
     for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
-        state.changes[c] |= edited;  // its pairs end in the next step
-        state.edited_colliders.push_back(c);
+        mark_edited(state, c);  // its pairs end in the next step
     }
     ++state.report.quarantined;
 }
@@ -91,6 +91,10 @@ void solve(WorldState& state, float seconds) {
     state.report.colours = counts.colours;
     state.report.overflow = counts.overflow;
     state.report.speed_clamped = counts.clamped;
+    for (std::size_t i = 0; !state.clamped.empty() && i < state.awake.size(); ++i)
+        if (!state.solver.motion(i).clamped &&
+            std::binary_search(state.clamped.begin(), state.clamped.end(), state.awake[i]))
+            ++state.report.speed_clamped;
 }
 
 void finish(WorldState& state, float seconds) {
@@ -110,7 +114,9 @@ void finish(WorldState& state, float seconds) {
             next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};
             state.bodies.forces[body] = {};
             if (!is_valid(next)) {
-                state.reused[i] = 1;
+                const bool left = is_finite(next.position) && is_finite(next.linear_velocity) &&
+                                  is_finite(next.angular_velocity) && is_finite(next.rotation);
+                state.reused[i] = left ? 2 : 1;
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
@@ -133,7 +139,10 @@ void finish(WorldState& state, float seconds) {
     });
     std::vector<std::uint32_t> invalid;
     for (std::size_t i = 0; i < state.awake.size(); ++i)
-        if (state.reused[i] != 0) invalid.push_back(state.awake[i]);
+        if (state.reused[i] != 0) {
+            invalid.push_back(state.awake[i]);
+            state.report.left_world += state.reused[i] == 2 ? 1 : 0;
+        }
     for (const std::uint32_t body : invalid) quarantine(state, body);
     move_to_asleep(state, invalid);
 }

@@ -34,6 +34,7 @@ struct StepReport {
     std::uint32_t speed_clamped = 0;  ///< bodies whose speed was clamped
     std::uint32_t pairs_dropped = 0;  ///< dropped because of Settings::max_pairs
     std::uint32_t quarantined = 0;    ///< bodies quarantined in this step
+    std::uint32_t left_world = 0;     ///< of these: bodies that went beyond 1e7 m; they stay at the border
     std::string_view structure;       ///< the broad-phase structure of the awake boxes
     std::string_view reason;          ///< why it was chosen; empty when the user named it
 };

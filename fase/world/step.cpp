@@ -34,7 +34,10 @@ void step(WorldState& state, float seconds) {
     state.query.bodies_moved = true;
     state.query.ready.store(false, std::memory_order_relaxed);
 
-    timed(state, Stage::Refresh, [&] { refresh_boxes(state, seconds); });
+    timed(state, Stage::Refresh, [&] {
+        apply_edits(state);
+        refresh_boxes(state, seconds);
+    });
     timed(state, Stage::Pairs, [&] { track_pairs(state); });
     timed(state, Stage::Collide, [&] { collide(state, seconds); });
     timed(state, Stage::Islands, [&] { find_islands(state, seconds); });

@@ -37,11 +37,8 @@ void end_contact(WorldState& state, std::uint32_t index) {
         const ContactEvent event{{c.collider_a, c.generation_a, state.collider_ids.owner()},
                                  {c.collider_b, c.generation_b, state.collider_ids.owner()}};
         if (c.sensor) {
-            const bool a_is_sensor = same_collider(state, c.collider_a, c.generation_a)
-                                         ? state.colliders[c.collider_a].sensor
-                                         : !state.colliders[c.collider_b].sensor;
-            state.events.sensors_ended.push_back(a_is_sensor ? SensorEvent{event.a, event.b}
-                                                             : SensorEvent{event.b, event.a});
+            state.events.sensors_ended.push_back(c.sensor_is_b ? SensorEvent{event.b, event.a}
+                                                               : SensorEvent{event.a, event.b});
         } else {
             state.events.contacts_ended.push_back(event);
         }

@@ -23,52 +23,63 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
+pairs::BoxSets make_box_sets(const std::string& structure) {
+    if (structure == "auto") return pairs::BoxSets::automatic(broad::BoxUse::IsQueried);
+    return pairs::BoxSets(*broad::AnyStructure::named(structure));
+}
+
 Result<World> World::create(const Settings& settings, const Setup& setup) {
-    if (auto checked = check(settings); !checked) return checked.error();
-    if (setup.threads < 0 || setup.threads > 1024)
-        return Error{Status::BadArgument, "Setup.threads",
-                     "found " + std::to_string(setup.threads) + "; expected 0 to 1024", "0 uses all cores"};
-    auto structure = broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
-    if (!structure) {
-        Error error = structure.error();
-        error.where = "Setup.structure";
-        error.remedy = "or leave it at \"auto\"";
-        return error;
-    }
     try {
+        if (auto checked = check(settings); !checked) return checked.error();
+        if (setup.threads < 0 || setup.threads > 1024)
+            return Error{Status::BadArgument, "Setup.threads",
+                         "found " + std::to_string(setup.threads) + "; expected 0 to 1024", "0 uses all cores"};
+        if (auto named =
+                broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
+            !named) {
+            Error error = named.error();
+            error.where = "Setup.structure";
+            error.remedy = "or leave it at \"auto\"";
+            return error;
+        }
         auto state = std::make_unique<WorldState>();
         const std::uint16_t number = next_world_number();
         state->body_ids = IdPool<BodyTag>(number);
         state->collider_ids = IdPool<ColliderTag>(number);
         state->settings = settings;
-        state->box_sets = setup.structure == "auto" ? pairs::BoxSets::automatic(broad::BoxUse::IsQueried)
-                                                    : pairs::BoxSets(*structure);
+        state->structure = setup.structure;
+        state->box_sets = make_box_sets(setup.structure);
         if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
         state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();
         return World(std::move(state));
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, "World::create", "out of memory for a world", "free memory and try again"};
+        return out_of_memory("World::create");
     }
 }
 
 Result<StepReport> World::step() { return step(state_->settings.time_step); }
 
 Result<StepReport> World::step(float seconds) {
-    if (!(seconds >= 0 && seconds <= 1))
-        return Error{Status::BadArgument, "World::step: seconds",
-                     "found " + detail::text_of(seconds) + "; expected 0 to 1", "take several steps for longer times"};
-    if (state_->stepping)
-        return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
-    try {
+    return guarded(*state_, "World::step", [&]() -> Result<StepReport> {
+        if (!(seconds >= 0 && seconds <= 1))
+            return Error{Status::BadArgument, "World::step: seconds",
+                         "found " + detail::text_of(seconds) + "; expected 0 to 1",
+                         "take several steps for longer times"};
+        if (state_->stepping)
+            return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
         state_->stepping = true;
+        struct End {
+            WorldState& state;
+            bool is_complete = false;
+            ~End() {
+                state.stepping = false;
+                state.broken = !is_complete;
+            }
+        } end{*state_};
         fase::step(*state_, seconds);
-        state_->stepping = false;
+        end.is_complete = true;
         return state_->report;
-    } catch (const std::bad_alloc&) {
-        state_->stepping = false;
-        return Error{Status::NoMemory, "World::step", "out of memory for the step",
-                     "restore a snapshot, or remove bodies"};
-    }
+    });
 }
 
 const StepReport& World::last_report() const { return state_->report; }
@@ -100,68 +111,103 @@ BodyState state_of(const WorldState& state, BodyId id) {
     return out;
 }
 
+/// Returns a contact that has points and whose colliders exist.
+std::optional<ContactState> contact_of(const WorldState& state, std::uint32_t index) {
+    const dynamics::Contact& c = state.contacts[index];
+    ContactState contact;
+    contact.a = {c.collider_a, c.generation_a, state.collider_ids.owner()};
+    contact.b = {c.collider_b, c.generation_b, state.collider_ids.owner()};
+    if (c.count == 0 || !state.collider_ids.contains(contact.a) || !state.collider_ids.contains(contact.b))
+        return std::nullopt;
+    contact.normal = c.normal;
+    contact.count = c.count;
+    contact.sensor = c.sensor;
+    const Vec3 second = cross(c.normal, c.tangent);
+    for (std::size_t i = 0; i < c.count; ++i) {
+        contact.points[i] =
+            state.bodies.motion[c.body_a].position + to_double(c.offset_a + c.tangent * c.x[i] + second * c.y[i]);
+        contact.separations[i] = c.separation[i];
+        contact.impulses[i] = c.total_impulse[i];
+        contact.features[i] = c.feature[i];
+    }
+    return contact;
+}
+
 }  // namespace
 
 Result<BodyState> World::body(BodyId body) const {
-    if (!contains(body)) return stale_id("World::body");
-    return state_of(*state_, body);
+    return guarded(*state_, "World::body", [&]() -> Result<BodyState> {
+        if (!contains(body)) return stale_id("World::body");
+        return state_of(*state_, body);
+    });
 }
 
 Result<ColliderState> World::collider(ColliderId collider) const {
-    if (!contains(collider)) return stale_id("World::collider");
-    const Collider& c = state_->colliders[collider.index];
-    ColliderState out;
-    out.id = collider;
-    out.body = *state_->body_ids.id_at(c.body);
-    out.shape = &state_->shapes[c.shape].shape;
-    out.def = {c.in_body, c.material, c.density, c.filter, c.sensor, c.user};
-    out.box = speculative_box(*state_, collider.index, 0, 0);
-    return out;
+    return guarded(*state_, "World::collider", [&]() -> Result<ColliderState> {
+        if (!contains(collider)) return stale_id("World::collider");
+        const Collider& c = state_->colliders[collider.index];
+        ColliderState out;
+        out.id = collider;
+        out.body = *state_->body_ids.id_at(c.body);
+        out.shape = &state_->shapes[c.shape].shape;
+        out.def = {c.in_body, c.material, c.density, c.filter, c.sensor, c.user};
+        out.box = speculative_box(*state_, collider.index, 0, 0);
+        return out;
+    });
 }
+
+namespace {
+
+/// Grows a list by at most `count`, by what `fill` appends; leaves it as it was, and returns false, when memory runs
+/// out.
+template <class T, class F> bool append(std::vector<T>& out, std::size_t count, const F& fill) noexcept {
+    try {
+        reserve_for(out, out.size() + count);
+    } catch (...) {
+        return false;
+    }
+    fill();
+    return true;
+}
+
+}  // namespace
 
 std::vector<BodyId> World::bodies() const {
     std::vector<BodyId> out;
-    out.reserve(body_count());
-    for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
-        if (const auto id = state_->body_ids.id_at(i)) out.push_back(*id);
+    append(out, body_count(), [&] {
+        for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
+            if (const auto id = state_->body_ids.id_at(i)) out.push_back(*id);
+    });
     return out;
 }
 
 void World::read_bodies(std::vector<BodyState>& out) const {
-    for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
-        if (const auto id = state_->body_ids.id_at(i)) out.push_back(state_of(*state_, *id));
+    append(out, body_count(), [&] {
+        for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
+            if (const auto id = state_->body_ids.id_at(i)) out.push_back(state_of(*state_, *id));
+    });
 }
 
 std::vector<ColliderId> World::colliders_of(BodyId body) const {
     std::vector<ColliderId> out;
-    if (!contains(body)) return out;
-    for (std::uint32_t c = state_->bodies.traits[body.index].first_collider; c != no_index;
-         c = state_->colliders[c].next)
-        out.push_back(*state_->collider_ids.id_at(c));
+    if (!contains(body) || state_->broken) return out;
+    const std::uint32_t first = state_->bodies.traits[body.index].first_collider;
+    std::size_t count = 0;
+    for (std::uint32_t c = first; c != no_index; c = state_->colliders[c].next) ++count;
+    append(out, count, [&] {
+        for (std::uint32_t c = first; c != no_index; c = state_->colliders[c].next)
+            out.push_back(*state_->collider_ids.id_at(c));
+    });
     return out;
 }
 
 void World::read_contacts(std::vector<ContactState>& out) const {
-    for (const pairs::PairList* list : {&state_->active, &state_->resting})
-        for (const std::uint32_t index : list->values) {
-            const dynamics::Contact& c = state_->contacts[index];
-            ContactState contact;
-            contact.a = {c.collider_a, c.generation_a, state_->collider_ids.owner()};
-            contact.b = {c.collider_b, c.generation_b, state_->collider_ids.owner()};
-            if (c.count == 0 || !contains(contact.a) || !contains(contact.b)) continue;
-            contact.normal = c.normal;
-            contact.count = c.count;
-            contact.sensor = c.sensor;
-            const Vec3 second = cross(c.normal, c.tangent);
-            for (std::size_t i = 0; i < c.count; ++i) {
-                contact.points[i] = state_->bodies.motion[c.body_a].position +
-                                    to_double(c.offset_a + c.tangent * c.x[i] + second * c.y[i]);
-                contact.separations[i] = c.separation[i];
-                contact.impulses[i] = c.total_impulse[i];
-                contact.features[i] = c.feature[i];
-            }
-            out.push_back(contact);
-        }
+    if (state_->broken) return;
+    append(out, state_->active.size() + state_->resting.size(), [&] {
+        for (const pairs::PairList* list : {&state_->active, &state_->resting})
+            for (const std::uint32_t index : list->values)
+                if (const auto contact = contact_of(*state_, index)) out.push_back(*contact);
+    });
 }
 
 }  // namespace fase

@@ -10,6 +10,7 @@
 #include "fase/narrow/manifold.hpp"
 #include "fase/world/body.hpp"
 #include "fase/world/events.hpp"
+#include "fase/world/id_map.hpp"
 #include "fase/world/settings.hpp"
 #include "fase/world/stats.hpp"
 
@@ -30,9 +31,12 @@ struct ContactState {
     bool sensor = false;  ///< one collider is a sensor: events only, no forces
 };
 
-/// A set of bodies that move, collide and sleep. A call that returns an Error changes nothing: hash() is the same
-/// before and after. Threads: non-const functions need exclusive access; const functions may run concurrently with each
-/// other. The same sequence of calls gives the same bits on every machine, for every thread count and structure.
+/// A set of bodies that move, collide and sleep. A call that returns an Error changes nothing, whatever the reason:
+/// hash() is the same before and after. Nothing is thrown. When memory runs out, calls return NoMemory, and lists are
+/// returned empty or left as they were. The one exception is step(): a step that runs out of memory leaves the world
+/// broken; from then on every call but restore() and the destructor returns an Error. Threads: non-const functions need
+/// exclusive access; const functions may run concurrently with each other. The same sequence of calls gives the same
+/// bits on every machine, for every thread count and structure.
 class World {
 public:
     /// Creates an empty world. BadArgument when a setting is out of range or the structure is unknown.
@@ -100,7 +104,7 @@ public:
     Result<void> apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds);
 
     // Stepping.
-    /// Advances the simulation by settings().time_step.
+    /// Advances the simulation by settings().time_step. When memory runs out, the world is broken until restore().
     Result<StepReport> step();
     /// Advances the simulation by `seconds`, 0 to 1; 0 updates boxes, pairs and contacts, and moves nothing.
     Result<StepReport> step(float seconds);
@@ -116,10 +120,15 @@ public:
     /// Returns a hash of the whole state: settings, poses, velocities, sleep, contacts, impulses.
     [[nodiscard]] std::uint64_t hash() const;
     /// Returns the whole state as little-endian bytes for restore(). A restored world continues with the same bits.
+    /// Empty when memory runs out, or when the world is broken by step().
     [[nodiscard]] std::vector<std::byte> snapshot() const;
-    /// Replaces all bodies and settings with those of the snapshot. Ids that were valid when it was taken are valid
-    /// again. Format when the bytes are not a snapshot of this version; nothing changes then.
-    Result<void> restore(std::span<const std::byte> snapshot);
+    /// Replaces all bodies and settings with those of the snapshot, which may come from any source: every number and
+    /// list is checked. Ids that were valid when the world took the snapshot are valid again; those that it issued
+    /// later are refused from now on, and issued for no other body. Ids of another world that took the snapshot are
+    /// translated by the map that is returned. A world takes a snapshot as its own when it has the same number: the
+    /// worlds of a process are counted from 1. Format when the bytes are not a snapshot of this version; Capacity when
+    /// a slot has issued 65,535 ids; nothing changes then.
+    Result<IdMap> restore(std::span<const std::byte> snapshot);
 
 private:
     friend struct WorldStateAccess;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -168,6 +169,51 @@ TEST(Png, RejectsAPaletteIndexWithoutAColour) {
     const Result<Image> image = read_png(bytes, "file.png");
     ASSERT_FALSE(image);
     EXPECT_NE(image.error().problem.find("palette index"), std::string::npos) << image.error().text();
+}
+
+/// Puts a chunk after the header.
+std::vector<std::byte> with_chunk(std::vector<std::byte> bytes, std::string_view name, std::uint32_t length,
+                                  std::span<const std::byte> content) {
+    std::vector<std::byte> chunk(8);
+    put(chunk, 0, length);
+    for (std::size_t i = 0; i < 4; ++i) chunk[4 + i] = static_cast<std::byte>(name[i]);
+    chunk.insert(chunk.end(), content.begin(), content.end());
+    chunk.resize(chunk.size() + 4);
+    put(chunk, chunk.size() - 4, crc_of(std::span(chunk).subspan(4, chunk.size() - 8)));
+    bytes.insert(bytes.begin() + 33, chunk.begin(), chunk.end());
+    return bytes;
+}
+
+TEST(Png, BelievesNoChunkLength) {
+    const std::vector<std::byte> good = *write_png(Image(Size{3, 2}));
+    for (const char* name : {"zTXt", "iTXt", "tEXt", "iCCP", "IDAT", "PLTE", "eXIf", "abCd"}) {
+        for (const std::uint32_t length : {0xffffffffu, 0x7fffffffu, 0x3fffffffu, 1000u}) {
+            const Result<Image> image = read_png(with_chunk(good, name, length, {}), "file.png");
+            ASSERT_FALSE(image) << name;
+            EXPECT_EQ(image.error().where, "file.png:33");
+        }
+    }
+    std::vector<std::byte> cut = good;
+    cut.resize(cut.size() - 12);
+    EXPECT_FALSE(read_png(cut, "without an end"));
+}
+
+/// Nine kilobytes of text that expand to nine megabytes: not read at all.
+TEST(Png, PassesOverTextsAndProfiles) {
+    const Image picture(Size{3, 2});
+    std::vector<std::byte> content;
+    for (const char c : std::string_view("text\0\0", 6)) content.push_back(static_cast<std::byte>(c));
+    const std::vector<unsigned char> text(9'000'000, 'a');
+    uLongf size = compressBound(text.size());
+    std::vector<unsigned char> packed(size);
+    ASSERT_EQ(compress2(packed.data(), &size, text.data(), text.size(), 9), Z_OK);
+    for (uLongf i = 0; i < size; ++i) content.push_back(static_cast<std::byte>(packed[i]));
+    const auto length = static_cast<std::uint32_t>(content.size());
+    for (const char* name : {"zTXt", "iCCP"}) {
+        const Result<Image> image = read_png(with_chunk(*write_png(picture), name, length, content), "file.png");
+        ASSERT_TRUE(image) << image.error().text();
+        EXPECT_EQ(*image, picture);
+    }
 }
 
 TEST(Png, RejectsInputThatIsNotAPngFile) {

@@ -106,11 +106,49 @@ TEST(IdPool, restored_from_its_parts_continues_as_before) {
     for (int i = 0; i < 20; ++i) ids.push_back(pool.add());
     for (const std::size_t i : {3u, 17u, 5u}) (void)pool.remove(ids[i]);
     Pool copy(1);
-    copy.restore(pool.slots(), pool.free_list());
+    ASSERT_TRUE(copy.restore(pool.slots(), pool.free_list(), pool.newest()));
     EXPECT_EQ(copy.count(), pool.count());
     EXPECT_EQ(copy.size(), pool.size());
     for (const ThingId id : ids) EXPECT_EQ(copy.contains(id), pool.contains(id));
     for (int i = 0; i < 6; ++i) EXPECT_EQ(copy.add(), pool.add());
+}
+
+TEST(IdPool, refuses_parts_that_no_pool_has) {
+    using Slots = std::vector<Pool::Slot>;
+    Pool pool(1);
+    EXPECT_TRUE(pool.restore(Slots{{1, true}, {2, false}}, {1}, {1, 2}));
+    EXPECT_FALSE(pool.restore(Slots{{1, true}, {2, false}}, {0, 1}, {1, 2})) << "a slot in use is free";
+    EXPECT_FALSE(pool.restore(Slots{{1, true}, {2, false}}, {1, 1}, {1, 2})) << "a slot is free twice";
+    EXPECT_FALSE(pool.restore(Slots{{1, true}, {2, false}}, {}, {1, 2})) << "a free slot is not listed";
+    EXPECT_FALSE(pool.restore(Slots{{1, true}, {2, false}}, {7}, {1, 2})) << "no such slot";
+    EXPECT_FALSE(pool.restore(Slots{{3, true}}, {}, {2})) << "a generation that was not issued";
+    EXPECT_FALSE(pool.restore(Slots{{0, true}}, {}, {2})) << "generation 0";
+    EXPECT_FALSE(pool.restore(Slots{{1, true}}, {}, {})) << "newest generations are missing";
+    EXPECT_EQ(pool.count(), 1u);
+    EXPECT_TRUE(pool.contains({0, 1, 1}));
+}
+
+TEST(IdPool, that_goes_back_issues_no_id_twice) {
+    Pool pool(1);
+    const ThingId a = pool.add();
+    const Pool saved = pool;
+    const ThingId b = pool.add();
+    pool.remove(a);
+    const ThingId a2 = pool.add();
+    Pool back(1);
+    ASSERT_TRUE(back.restore(saved.slots(), saved.free_list(), saved.newest()));
+    ASSERT_TRUE(back.continue_after(pool, false));
+    EXPECT_TRUE(back.contains(a));
+    EXPECT_FALSE(back.contains(b));
+    EXPECT_FALSE(back.contains(a2));
+    const ThingId b2 = back.add();
+    EXPECT_EQ(b2.index, b.index);
+    EXPECT_FALSE(back.contains(b));
+    back.remove(a);
+    const ThingId a3 = back.add();
+    EXPECT_EQ(a3.index, a.index);
+    EXPECT_FALSE(back.contains(a2));
+    EXPECT_NE(a3, a2);
 }
 
 /// Compares with a list of all issued ids.

@@ -122,6 +122,21 @@ TEST(BspLumps, HaveASegInEverySubSectorHoweverSmall) {
     EXPECT_EQ(again->segs.size(), bsp.stats.wall_segs);
 }
 
+/// The first node of a classic tree lies at x = "XN", y = "OD": numbers that any map may have.
+TEST(BspLumps, ClassicNodesMayBeginLikeExtendedOnes) {
+    const Map map = pool_map();
+    const LevelBsp bsp = *compile(map);
+    Wad wad = written(map, bsp, {});
+    for (const std::string_view magic : {"XNOD", "ZNOD", "XGLN"}) {
+        auto& nodes = wad.lumps[*wad.find_in_map(0, "NODES")].bytes;
+        for (std::size_t i = 0; i < 4; ++i) nodes[i] = static_cast<std::byte>(magic[i]);
+        const auto again = read_bsp("test.wad", wad, 0, *read_map("test.wad", wad, "MAP01"), BspLumps::Nodes);
+        ASSERT_TRUE(again) << again.error().text();
+        EXPECT_EQ(again->nodes.size(), bsp.nodes.size());
+        EXPECT_EQ(again->nodes[0].x, magic[0] | magic[1] << 8);
+    }
+}
+
 TEST(BspLumps, AreRejectedIfTheyDoNotFit) {
     const Map map = room_map();
     LevelBsp bsp = *compile(map);

@@ -87,22 +87,56 @@ TEST(Wad, ReadsASquareRoom) {
     EXPECT_NE(none.error().text().find("MAP01"), std::string::npos);
 }
 
-TEST(Wad, NamesTheEntryWithAnInvalidIndex) {
-    const auto refused = [](std::string_view lump, std::size_t byte, int value) {
+TEST(Wad, LeavesOutWhatCannotBeUsedAndNamesIt) {
+    const auto read = [](std::string_view lump, std::size_t byte, int value) {
         Wad wad = room();
         auto& bytes = wad.lumps[*wad.find_in_map(0, lump)].bytes;
         bytes[byte] = static_cast<std::byte>(value & 0xff);
         bytes[byte + 1] = static_cast<std::byte>(value >> 8 & 0xff);
         const auto map = read_map("room", wad, "MAP01");
-        return map ? std::string("read") : map.error().text();
+        EXPECT_TRUE(map) << map.error().text();
+        EXPECT_EQ(map->lines.size(), 4u) << "the numbers of lines do not change";
+        EXPECT_EQ(map->left_out.size(), 1u);
+        return map->left_out.empty() ? std::string() : map->left_out[0];
     };
-    EXPECT_EQ(refused("LINEDEFS", 14, 9), "room: MAP01 LINEDEFS[1]: found vertex 9; expected one of the 4");
-    EXPECT_EQ(refused("LINEDEFS", 14, 2),
-              "room: MAP01 LINEDEFS[1]: found a line of zero length; expected two different corners");
-    EXPECT_EQ(refused("LINEDEFS", 24, 1), "room: MAP01 LINEDEFS[1]: found side 1; expected one of the 1");
-    EXPECT_EQ(refused("LINEDEFS", 24, 0xffff),
-              "room: MAP01 LINEDEFS[1]: found a line without a right side; expected one");
-    EXPECT_EQ(refused("SIDEDEFS", 28, 7), "room: MAP01 SIDEDEFS[0]: found sector 7; expected one of the 1");
+    EXPECT_EQ(read("LINEDEFS", 14, 9), "a line with a vertex that does not exist, LINEDEFS[1]");
+    EXPECT_EQ(read("LINEDEFS", 14, 2), "a line of zero length, LINEDEFS[1]");
+    EXPECT_EQ(read("LINEDEFS", 24, 1), "a line with a side that does not exist, LINEDEFS[1]");
+    EXPECT_EQ(read("LINEDEFS", 24, 0xffff), "a line without a side, LINEDEFS[1]");
+}
+
+TEST(Wad, KeepsALineWithOneGoodSide) {
+    Wad wad = room();
+    auto& lines = wad.lumps[*wad.find_in_map(0, "LINEDEFS")].bytes;
+    lines[14 + 12] = std::byte{9};  // a left side that does not exist
+    lines[14 + 13] = std::byte{0};
+    const auto map = read_map("room", wad, "MAP01");
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->lines[1].right, 0);
+    EXPECT_EQ(map->lines[1].left, no_side);
+    EXPECT_EQ(map->left_out.size(), 1u);
+}
+
+TEST(Wad, IgnoresASideThatNoLineUses) {
+    Wad wad = room();
+    append_u32(wad.lumps[*wad.find_in_map(0, "SIDEDEFS")].bytes, 0);
+    for (int i = 0; i < 3; ++i) append_name(wad.lumps[*wad.find_in_map(0, "SIDEDEFS")].bytes, "-");
+    append_u16(wad.lumps[*wad.find_in_map(0, "SIDEDEFS")].bytes, 0xffff);
+    const auto map = read_map("room", wad, "MAP01");
+    ASSERT_TRUE(map) << map.error().text();
+    EXPECT_TRUE(map->left_out.empty());
+}
+
+TEST(Wad, RejectsAMapOfWhichNoLineCanBeUsed) {
+    Wad wad = room();
+    auto& sides = wad.lumps[*wad.find_in_map(0, "SIDEDEFS")].bytes;
+    sides[28] = std::byte{7};
+    const auto map = read_map("room", wad, "MAP01");
+    ASSERT_FALSE(map);
+    EXPECT_EQ(
+        map.error().text(),
+        "room: MAP01: found 4 lines with a side whose sector does not exist, the first is LINEDEFS[0]; expected a "
+        "line that can be used");
 }
 
 TEST(Wad, RejectsEveryTruncation) {

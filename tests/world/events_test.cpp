@@ -110,6 +110,32 @@ TEST(Events, a_sensor_reports_overlaps_and_applies_no_forces) {
     EXPECT_EQ(state(world, ball).pose.position.y, state(world, twin).pose.position.y);
 }
 
+/// A removed sensor is still the sensor when its slot, or that of its visitor, is used again before the event is told.
+TEST(Events, sensor_and_visitor_keep_their_places_when_both_are_removed) {
+    for (const bool sensor_first : {true, false}) {
+        for (const bool reuse_as_sensor : {true, false}) {
+            World world = make_world();
+            const auto add_gate = [&] {
+                return add(world, {.kind = BodyKind::Static, .position = {0, 2, 0}}, Box{}, {.sensor = true});
+            };
+            BodyId gate, ball;
+            if (sensor_first) gate = add_gate();
+            ball = add(world, {.position = {0, 2, 0}, .gravity_scale = 0}, Sphere{0.2f});
+            if (!sensor_first) gate = add_gate();
+            ASSERT_TRUE(world.step());
+            ASSERT_EQ(world.events().sensors_begun.size(), 1u);
+            const SensorEvent begun = world.events().sensors_begun[0];
+            ASSERT_TRUE(world.remove_body(gate));
+            ASSERT_TRUE(world.remove_body(ball));
+            for (int i = 0; i < 2; ++i) add(world, {.position = {9.0 * i, 50, 0}}, Box{}, {.sensor = reuse_as_sensor});
+            ASSERT_TRUE(world.step());
+            ASSERT_EQ(world.events().sensors_ended.size(), 1u);
+            EXPECT_EQ(world.events().sensors_ended[0].sensor, begun.sensor);
+            EXPECT_EQ(world.events().sensors_ended[0].visitor, begun.visitor);
+        }
+    }
+}
+
 TEST(Events, sleeping_and_waking_are_reported) {
     World world = make_world();
     add_ground(world);

@@ -123,7 +123,7 @@ void DynamicBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     }
     sink.flush();
     std::vector<std::vector<Pair>> found(parts.size());
-    tasks.run(parts.size(), [&](std::size_t i) {
+    run_chunks(tasks, parts.size(), [&](std::size_t i) {
         PairSink part_sink(found[i]);
         Descent<false>(*this, *this, part_sink).run(parts[i]);
     });

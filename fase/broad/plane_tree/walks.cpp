@@ -130,7 +130,7 @@ void PlaneTree::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     }
     sink.flush();
     std::vector<std::vector<Pair>> found(parts.size());
-    tasks.run(parts.size(), [&](std::size_t i) {
+    run_chunks(tasks, parts.size(), [&](std::size_t i) {
         PairSink part_sink(found[i]);
         Descent<false>(*this, part_sink).run(parts[i]);
     });

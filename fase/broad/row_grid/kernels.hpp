@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fase/broad/row_grid/set.hpp"
+#include "fase/broad/search/pair_sink.hpp"
 
 namespace fase::broad::row_grid {
 
@@ -15,20 +16,27 @@ class PairBlock {
 public:
     static constexpr std::size_t capacity = 1024;  ///< in pairs
 
-    explicit PairBlock(std::vector<Pair>& out) : at(begin()), out_(out) {}
+    explicit PairBlock(std::vector<Pair>& out) : at(begin()), out_(out) { reserve_room(out_, capacity); }
     PairBlock(const PairBlock&) = delete;
     PairBlock& operator=(const PairBlock&) = delete;
-    ~PairBlock() { flush(at); }
+    ~PairBlock() { append(at); }
 
     Pair* at;  ///< where the next pair goes
     [[nodiscard]] Pair* end() { return begin() + capacity; }
     /// Appends all pairs before `written` and returns the position of the next pair.
     [[gnu::noinline]] Pair* flush(const Pair* written) {
-        out_.insert(out_.end(), static_cast<const Pair*>(begin()), written);
-        return at = begin();
+        append(written);
+        reserve_room(out_, capacity);
+        return at;
     }
 
 private:
+    /// Allocates nothing: there is room for one block.
+    void append(const Pair* written) noexcept {
+        out_.insert(out_.end(), static_cast<const Pair*>(begin()), written);
+        at = begin();
+    }
+
     std::vector<Pair>& out_;
     alignas(64) unsigned char memory_[capacity * sizeof(Pair)];  // uninitialized, to save time
 

@@ -25,7 +25,12 @@ public:
         /// Provides at least `count` empty lists.
         Lease(ThreadLocalPairBuffers& buffers, std::size_t count)
             : buffers_(buffers), is_owner_(!buffers.in_use_.exchange(true)) {
-            if (lists().size() < count) lists().resize(count);
+            try {
+                if (lists().size() < count) lists().resize(count);
+            } catch (...) {
+                if (is_owner_) buffers_.in_use_ = false;
+                throw;
+            }
             for (std::vector<Pair>& list : lists()) list.clear();
         }
         Lease(const Lease&) = delete;

@@ -105,7 +105,7 @@ void WideBvh::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
     }
     sink.flush();
     std::vector<std::vector<Pair>> found(parts.size());
-    tasks.run(parts.size(), [&](std::size_t i) {
+    run_chunks(tasks, parts.size(), [&](std::size_t i) {
         PairSink part_sink(found[i]);
         wide::find_pairs(forest_, forest_, parts[i], false, part_sink);
     });

@@ -18,7 +18,7 @@ struct Contact {
     bool reusable = false;                             ///< the manifold may be reused in later steps
     bool pushes = false;                               ///< an impulse acted in the last step
     bool a_rolls = false, b_rolls = false;             ///< a curved shape: contact points do not turn with the body
-    bool unused = false;
+    bool sensor_is_b = false;                          ///< of a sensor contact: b is the sensor
     float friction = 0;
     float restitution = 0;
 

@@ -372,7 +372,7 @@ void Solver::store_contact(Contact& c, const ContactBlock& block, int lane, cons
         const Vec3 shift = c.tangent * c.x[hardest] + second * c.y[hardest];
         const float half_gap = 0.5f * c.separation[hardest];
         const float speed = std::max(block.approach[hardest][lane], 1e-6f);
-        const float seconds = std::clamp(c.separation[hardest] / speed, 0.0f, settings.time_step);
+        const float seconds = std::clamp(c.separation[hardest] / speed, -settings.time_step, settings.time_step);
         const BodyMotion& ma = bodies.motion[c.body_a];
         const BodyMotion& mb = bodies.motion[c.body_b];
         const Vec3 b_from_a = c.offset_a - c.offset_b;

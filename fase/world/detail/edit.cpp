@@ -17,17 +17,37 @@ Error refused(std::string where, std::string found, std::string expected, std::s
     return {Status::BadArgument, std::move(where), "found " + found + "; expected " + expected, std::move(remedy)};
 }
 
+Error broken_world(const char* where) {
+    return {Status::NoMemory, where, "found a world whose last step ran out of memory; expected a complete state",
+            "restore a snapshot"};
+}
+
+void reserve_body(WorldState& state) {
+    const std::size_t slots = state.body_ids.reserve_one();
+    reserve_for(state.bodies.traits, slots);
+    reserve_for(state.bodies.motion, slots);
+    reserve_for(state.bodies.forces, slots);
+    reserve_for(state.awake, slots);
+    reserve_for(state.asleep, slots);
+}
+
+void reserve_collider(WorldState& state) {
+    const std::size_t slots = state.collider_ids.reserve_one();
+    reserve_for(state.colliders, slots);
+    reserve_for(state.boxes, slots);
+    reserve_for(state.changes, slots);
+    reserve_for(state.set_of, slots);
+    reserve_for(state.edited_colliders, slots);
+}
+
 void mark_edited(WorldState& state, std::uint32_t collider) {
     mark_box_changed(state, collider);
-    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);
+    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);  // reserve_collider()
     state.changes[collider] |= edited;
 }
 
 void update_box(WorldState& state, std::uint32_t collider) {
     state.boxes[collider] = speculative_box(state, collider, 0, 0);
-    const broad::Move move{collider, state.boxes[collider]};
-    broad::AnyStructure& boxes = state.box_sets.of(state.bodies.traits[state.colliders[collider].body].motion_state);
-    boxes.move(std::span(&move, 1));
     mark_edited(state, collider);
 }
 
@@ -36,45 +56,79 @@ void update_boxes(WorldState& state, std::uint32_t body) {
         update_box(state, c);
 }
 
-void update_mass(WorldState& state, std::uint32_t body) {
+BodyEdit edit_of(const WorldState& state, std::uint32_t body) {
+    const dynamics::BodyTraits& traits = state.bodies.traits[body];
+    return {traits.kind, traits.mass_given, traits.mass, traits.first_collider, no_index, nullptr, nullptr};
+}
+
+BodyShape shape_of(const WorldState& state, const BodyEdit& edit) {
+    /// Calls f(shape, pose in the body's frame, density, sensor, outer radius, inner radius) for each collider.
+    const auto for_each = [&](const auto& f) {
+        for (std::uint32_t c = edit.first_collider; c != no_index; c = state.colliders[c].next) {
+            if (c == edit.removed) continue;
+            const Collider& collider = state.colliders[c];
+            const SharedShape& shared = state.shapes[collider.shape];
+            f(shared.shape, collider.in_body, collider.density, collider.sensor, shared.outer_radius,
+              shared.inner_radius);
+        }
+        if (edit.added == nullptr) return;
+        const ColliderDef& def = *edit.added_def;
+        f(*edit.added, LocalPose{def.pose.position, normalized(def.pose.rotation)}, def.density, def.sensor,
+          outer_radius(*edit.added), inner_radius(*edit.added));
+    };
+    BodyShape out;
+    out.mass = edit.mass;
+    if (!edit.mass_given) {
+        std::vector<MassProperties> parts;
+        for_each([&](const Shape& shape, const LocalPose& in_body, float density, bool sensor, float, float) {
+            if (!sensor && density > 0) parts.push_back(transformed(mass_properties(shape, density), in_body));
+        });
+        out.mass = combined(parts);
+    }
+    const PrincipalInertia inertia = principal(out.mass.inertia);
+    out.principal = {out.mass.centre, inertia.axes};
+    const bool dynamic = edit.kind == BodyKind::Dynamic && out.mass.mass > 0;
+    const auto inverted = [&](float moment) { return dynamic && moment > 0 ? 1 / moment : 0.0f; };
+    out.inverse_mass = dynamic ? 1 / out.mass.mass : 0;
+    out.inverse_moments = {inverted(inertia.moments.x), inverted(inertia.moments.y), inverted(inertia.moments.z)};
+    const LocalPose back = inverse(out.principal);
+    out.inner_radius = Aabb::infinity;
+    for_each([&](const Shape&, const LocalPose& in_body, float, bool sensor, float outer, float inner) {
+        out.reach = std::max(out.reach, length((back * in_body).position) + outer);
+        if (!sensor) out.inner_radius = std::min(out.inner_radius, inner);
+    });
+    return out;
+}
+
+Result<BodyShape> checked_shape_of(const WorldState& state, const BodyEdit& edit, const Pose& pose,
+                                   const std::string& where) {
+    const BodyShape shape = shape_of(state, edit);
+    const Vec3 moments = principal(shape.mass.inertia).moments;
+    if (auto checked = check_combined_mass(shape.mass, moments, where + "combined "); !checked) return checked.error();
+    if (auto checked = check_position((pose * shape.principal).position, where + "centre of mass"); !checked)
+        return checked.error();
+    return shape;
+}
+
+void set_shape(WorldState& state, std::uint32_t body, const BodyShape& shape) {
     dynamics::BodyTraits& traits = state.bodies.traits[body];
     dynamics::BodyMotion& motion = state.bodies.motion[body];
     const Pose pose = body_pose(traits, motion);
     const Vec3d centre_before = motion.position;
-    if (!traits.mass_given) {
-        std::vector<MassProperties> parts;
-        for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
-            const Collider& collider = state.colliders[c];
-            if (!collider.sensor && collider.density > 0)
-                parts.push_back(transformed(mass_properties(state.shapes[collider.shape].shape, collider.density),
-                                            collider.in_body));
-        }
-        traits.mass = combined(parts);
-    }
-    const PrincipalInertia inertia = principal(traits.mass.inertia);
-    traits.principal = {traits.mass.centre, inertia.axes};
-    const bool dynamic = traits.kind == BodyKind::Dynamic && traits.mass.mass > 0;
-    const auto inverted = [&](float moment) { return dynamic && moment > 0 ? 1 / moment : 0.0f; };
-    traits.inverse_mass = dynamic ? 1 / traits.mass.mass : 0;
-    traits.inverse_moments = {inverted(inertia.moments.x), inverted(inertia.moments.y), inverted(inertia.moments.z)};
+    traits.mass = shape.mass;
+    traits.principal = shape.principal;
+    traits.inverse_mass = shape.inverse_mass;
+    traits.inverse_moments = shape.inverse_moments;
+    traits.reach = shape.reach;
+    traits.inner_radius = shape.inner_radius;
     const Pose placed = pose * traits.principal;
     motion.position = placed.position;
     motion.rotation = normalized(placed.rotation);
     motion.linear_velocity += cross(motion.angular_velocity, to_float(motion.position - centre_before));
-
     const LocalPose back = inverse(traits.principal);
-    traits.reach = 0;
-    traits.inner_radius = Aabb::infinity;
-    for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
-        Collider& collider = state.colliders[c];
-        collider.in_principal = back * collider.in_body;
-        const SharedShape& shape = state.shapes[collider.shape];
-        traits.reach = std::max(traits.reach, length(collider.in_principal.position) + shape.outer_radius);
-        if (!collider.sensor) traits.inner_radius = std::min(traits.inner_radius, shape.inner_radius);
-    }
+    for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
+        state.colliders[c].in_principal = back * state.colliders[c].in_body;
 }
-
-namespace {
 
 std::uint64_t content_key(const Shape& shape) {
     Hasher hasher;
@@ -92,8 +146,6 @@ std::uint64_t content_key(const Shape& shape) {
     return hasher.value();
 }
 
-}  // namespace
-
 std::uint32_t share_shape(WorldState& state, const Shape& shape) {
     const std::uint64_t key = content_key(shape);
     const auto [begin, end] = state.shape_of_key.equal_range(key);
@@ -103,15 +155,19 @@ std::uint32_t share_shape(WorldState& state, const Shape& shape) {
             return at->second;
         }
     SharedShape shared{shape, 1, outer_radius(shape), inner_radius(shape), key};
-    std::uint32_t index = static_cast<std::uint32_t>(state.shapes.size());
-    if (state.free_shapes.empty()) {
+    const bool is_new_slot = state.free_shapes.empty();
+    const auto index = is_new_slot ? static_cast<std::uint32_t>(state.shapes.size()) : state.free_shapes.back();
+    if (is_new_slot) {
+        reserve_for(state.shapes, state.shapes.size() + 1);
+        reserve_for(state.free_shapes, state.shapes.size() + 1);  // release_shape() cannot fail
+    }
+    state.shape_of_key.emplace(key, index);
+    if (is_new_slot) {
         state.shapes.push_back(std::move(shared));
     } else {
-        index = state.free_shapes.back();
         state.free_shapes.pop_back();
         state.shapes[index] = std::move(shared);
     }
-    state.shape_of_key.emplace(key, index);
     return index;
 }
 

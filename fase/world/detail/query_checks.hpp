@@ -19,7 +19,7 @@ namespace fase::world_queries {
 /// Whether a ray is valid for a query. Called for every ray, so it builds no error text; see invalid_ray().
 [[nodiscard]] inline bool is_ray(const Ray& ray) {
     const Vec3d size = abs(ray.origin);
-    return size.x <= max_coordinate && size.y <= max_coordinate && size.z <= max_coordinate &&
+    return size.x <= limits::coordinate && size.y <= limits::coordinate && size.z <= limits::coordinate &&
            is_direction(ray.direction) && ray.length >= 0;
 }
 
@@ -47,13 +47,14 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where);
 /// NoMemory when an allocation fails.
 template <class R, class F> R run_query(const World& world, const char* where, const F& query) {
     const WorldState& state = WorldStateAccess::of(world);
-    if (state.stepping) return Error{Status::Busy, where, "called from inside a step", "call it after"};
     try {
+        if (state.stepping) return Error{Status::Busy, where, "called from inside a step", "call it after"};
+        if (state.broken) return broken_world(where);
         const StandardFloats floats;
         prepare_trees(state);
         return query(state);
     } catch (const std::bad_alloc&) {
-        return Error{Status::NoMemory, where, "out of memory for the result", ""};
+        return out_of_memory("query");
     }
 }
 

@@ -57,14 +57,29 @@ void measure_asleep_overhang(const WorldState& state, std::span<const std::uint3
                 std::max(state.query.asleep_overhang, overhang_of(state.boxes[c], world_queries::tight_box(state, c)));
 }
 
-void mark_box_changed(const WorldState& state, std::uint32_t collider) {
+namespace {
+
+void free_trees(QueryTrees& query) noexcept {
+    for (broad::WideBvh& tree : query.trees) tree = broad::WideBvh();
+    query.tree_of = {};
+    query.pending = {};
+    query.built = false;
+}
+
+}  // namespace
+
+void mark_box_changed(const WorldState& state, std::uint32_t collider) noexcept {
     QueryTrees& query = state.query;
     query.ready.store(false, std::memory_order_relaxed);
     if (!query.built) return;
-    if (query.tree_of.size() <= collider) query.tree_of.resize(state.colliders.size(), 0);
-    if (query.tree_of[collider] & QueryTrees::is_pending) return;
-    query.tree_of[collider] |= QueryTrees::is_pending;
-    query.pending.push_back(collider);
+    try {
+        if (query.tree_of.size() <= collider) query.tree_of.resize(state.colliders.size(), 0);
+        if (query.tree_of[collider] & QueryTrees::is_pending) return;
+        query.pending.push_back(collider);
+        query.tree_of[collider] |= QueryTrees::is_pending;
+    } catch (...) {  // no memory to record the change: the next query builds the trees again
+        free_trees(query);
+    }
 }
 
 namespace {
@@ -130,7 +145,13 @@ void world_queries::prepare_trees(const WorldState& state) {
     if (!query.queried.load(std::memory_order_relaxed)) query.queried.store(true, std::memory_order_relaxed);
     if (query.ready.load(std::memory_order_acquire)) return;
     const std::lock_guard guard(query.lock);
-    if (!query.ready.load(std::memory_order_relaxed)) update_trees(state);
+    if (query.ready.load(std::memory_order_relaxed)) return;
+    try {
+        update_trees(state);
+    } catch (...) {
+        free_trees(query);
+        throw;
+    }
 }
 
 void update_query_trees(WorldState& state) {
@@ -139,11 +160,12 @@ void update_query_trees(WorldState& state) {
     query.steps_without_query =
         query.queried.exchange(false, std::memory_order_relaxed) ? 0 : query.steps_without_query + 1;
     if (!query.built) return;
-    if (query.steps_without_query < max_unused_steps) return update_trees(state);
-    for (broad::WideBvh& tree : query.trees) tree = {};
-    query.tree_of = {};
-    query.pending = {};
-    query.built = false;
+    if (query.steps_without_query >= max_unused_steps) return free_trees(query);
+    try {
+        update_trees(state);
+    } catch (...) {  // the step does not need the trees; the next query builds them again
+        free_trees(query);
+    }
 }
 
 }  // namespace fase

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -124,7 +125,10 @@ struct WorldState {
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
-    pairs::BoxSets box_sets;                                             ///< fat boxes of colliders by motion state
+    pairs::BoxSets box_sets;  ///< fat boxes of colliders by motion state; edits reach them in the next step
+    std::vector<std::uint8_t>
+        set_of;                ///< by collider: 0 when its box is in no set, else 1 + the MotionState of the set
+    std::string structure;     ///< Setup::structure
     mutable QueryTrees query;  // mutable: the first query after a change updates it
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
@@ -136,14 +140,16 @@ struct WorldState {
     std::vector<std::uint32_t> moved;     ///< colliders that left their fat box in this step
     std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
     std::vector<std::uint8_t> reused;     ///< by active pair: the manifold of the last step was reused
+    std::vector<std::uint32_t> clamped;   ///< bodies whose speed was clamped before the step, ascending
     std::vector<std::uint32_t> scratch;
     std::vector<IslandActivity> island_activity;  ///< by island, for the stage "sleep"
     bool stepping = false;
+    bool broken = false;  ///< a step ran out of memory half-way: only restore() leads on
 };
 
 /// Call when a collider is added or removed, or when its box or the motion state of its body changes. Records the
 /// change for the query trees.
-void mark_box_changed(const WorldState& state, std::uint32_t collider);
+void mark_box_changed(const WorldState& state, std::uint32_t collider) noexcept;
 /// Call when a collider is added, removed, moved or changed by the user: the next step checks its pairs. Includes
 /// mark_box_changed().
 void mark_edited(WorldState& state, std::uint32_t collider);
@@ -174,6 +180,9 @@ void wake_requested_islands(WorldState& state);
 
 /// Sets friction and restitution of a contact from the materials of its colliders.
 void update_materials(WorldState& state, std::uint32_t contact);
+
+/// Brings the boxes of all colliders that were edited since the last step into the sets. The first act of a step.
+void apply_edits(WorldState& state);
 
 // The stages of a step, in order. Tests can call each alone.
 void refresh_boxes(WorldState& state, float seconds);

@@ -1,0 +1,219 @@
+/// Checks every list, index and number of a state.
+#include "fase/world/detail/check_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fase/geometry/bounds.hpp"
+#include "fase/world/detail/edit.hpp"
+
+namespace fase {
+namespace {
+
+using dynamics::BodyMotion;
+using dynamics::BodyTraits;
+using dynamics::Contact;
+
+bool is_unit(Vec3 v) {
+    const float squared = length_squared(v);
+    return squared > 0.98f && squared < 1.02f;
+}
+bool is_unit(Quat q) {
+    const float squared = length_squared(q);
+    return squared > 0.98f && squared < 1.02f;
+}
+bool is_within(float value, float min, float max) { return value >= min && value <= max; }
+bool is_ascending_below(const std::vector<std::uint32_t>& list, std::size_t size) {
+    return (list.empty() || list.back() < size) &&
+           std::adjacent_find(list.begin(), list.end(), [](auto a, auto b) { return a >= b; }) == list.end();
+}
+/// Counts how often each index below `size` is in a list. Empty when an index is not below.
+bool count(const std::vector<std::uint32_t>& list, std::vector<std::uint32_t>& counts) {
+    for (const std::uint32_t i : list) {
+        if (i >= counts.size()) return false;
+        ++counts[i];
+    }
+    return true;
+}
+
+bool sizes_agree(const WorldState& s) {
+    const std::size_t bodies = s.body_ids.size(), colliders = s.collider_ids.size();
+    return s.body_ids.owner() == s.collider_ids.owner() && s.bodies.traits.size() == bodies &&
+           s.bodies.motion.size() == bodies && s.bodies.forces.size() == bodies && s.colliders.size() == colliders &&
+           s.boxes.size() == colliders && s.changes.size() == colliders && std::isfinite(s.time) && s.time >= 0;
+}
+
+/// Every shape is valid, and has as many users as colliders use it; the free ones are listed.
+bool shapes_are_right(const WorldState& s) {
+    std::vector<std::uint32_t> users(s.shapes.size(), 0), free(s.shapes.size(), 0);
+    for (std::uint32_t c = 0; c < s.colliders.size(); ++c) {
+        if (!s.collider_ids.alive_at(c)) continue;
+        if (s.colliders[c].shape >= s.shapes.size()) return false;
+        ++users[s.colliders[c].shape];
+    }
+    if (!count(s.free_shapes, free)) return false;
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+        const SharedShape& shared = s.shapes[i];
+        if (shared.users != users[i] || free[i] != (users[i] == 0 ? 1u : 0u)) return false;
+        if (shared.users == 0) continue;
+        if (!check(shared.shape) || shared.outer_radius != outer_radius(shared.shape) ||
+            shared.inner_radius != inner_radius(shared.shape) || shared.key != content_key(shared.shape))
+            return false;
+    }
+    return true;
+}
+
+bool collider_is_right(const WorldState& s, std::uint32_t index) {
+    const Collider& c = s.colliders[index];
+    const Aabb& box = s.boxes[index];
+    if (!s.body_ids.alive_at(c.body)) return false;
+    if (!check(ColliderDef{c.in_body, c.material, c.density, c.filter, c.sensor, c.user})) return false;
+    if (!(box.lo.x <= box.hi.x && box.lo.y <= box.hi.y && box.lo.z <= box.hi.z)) return false;
+    return s.bodies.traits[c.body].kind != BodyKind::Dynamic || c.sensor ||
+           !std::holds_alternative<HalfSpace>(s.shapes[c.shape].shape);
+}
+
+/// Every collider is valid and in the list of its body; changed ones are listed.
+bool colliders_are_right(const WorldState& s) {
+    std::vector<std::uint32_t> listed(s.colliders.size(), 0), changed(s.colliders.size(), 0);
+    for (std::uint32_t body = 0; body < s.body_ids.size(); ++body) {
+        if (!s.body_ids.alive_at(body)) continue;
+        for (std::uint32_t c = s.bodies.traits[body].first_collider; c != no_index; c = s.colliders[c].next)
+            if (!s.collider_ids.alive_at(c) || s.colliders[c].body != body || listed[c]++ != 0) return false;
+    }
+    if (!count(s.edited_colliders, changed)) return false;
+    for (std::uint32_t c = 0; c < s.colliders.size(); ++c) {
+        if (s.changes[c] != (changed[c] != 0 ? edited : 0) || changed[c] > 1) return false;
+        if (s.collider_ids.alive_at(c) && (listed[c] != 1 || !collider_is_right(s, c))) return false;
+    }
+    return true;
+}
+
+bool motion_is_right(const WorldState& s, const BodyMotion& m, const dynamics::BodyForces& f) {
+    return is_in_world(m.position) && is_unit(m.rotation) && is_finite(m.linear_velocity) &&
+           is_finite(m.angular_velocity) && std::isfinite(m.sleep_time) && m.sleep_time >= 0 && is_finite(m.drift) &&
+           is_finite(m.turn) && (m.island == no_index || m.island < s.bodies.motion.size()) && is_finite(f.force) &&
+           is_finite(f.torque);
+}
+
+bool body_is_right(const WorldState& s, std::uint32_t body) {
+    const BodyTraits& t = s.bodies.traits[body];
+    if (t.locks > 63 || !is_within(t.linear_damping, 0, limits::damping) ||
+        !is_within(t.angular_damping, 0, limits::damping) ||
+        !is_within(t.gravity_scale, -limits::gravity_scale, limits::gravity_scale) ||
+        !motion_is_right(s, s.bodies.motion[body], s.bodies.forces[body]))
+        return false;
+    if (t.mass_given && !check_mass(t.mass, "")) return false;
+    const BodyShape shape = shape_of(s, edit_of(s, body));
+    if (!check_combined_mass(shape.mass, principal(shape.mass.inertia).moments, "")) return false;
+    const auto equal = [](const MassProperties& a, const MassProperties& b) {
+        return a.mass == b.mass && a.centre == b.centre && a.inertia.x == b.inertia.x && a.inertia.y == b.inertia.y &&
+               a.inertia.z == b.inertia.z;
+    };
+    if (!equal(t.mass, shape.mass) || !(t.principal == shape.principal) || t.inverse_mass != shape.inverse_mass ||
+        !(t.inverse_moments == shape.inverse_moments) || t.reach != shape.reach || t.inner_radius != shape.inner_radius)
+        return false;
+    const LocalPose back = inverse(t.principal);
+    for (std::uint32_t c = t.first_collider; c != no_index; c = s.colliders[c].next)
+        if (!(s.colliders[c].in_principal == back * s.colliders[c].in_body)) return false;
+    return true;
+}
+
+bool kinds_are_right(const WorldState& s) {
+    for (std::uint32_t body = 0; body < s.body_ids.size(); ++body) {
+        const BodyTraits& t = s.bodies.traits[body];
+        if (t.kind > BodyKind::Dynamic || t.motion_state > MotionState::Awake) return false;
+        if ((t.kind == BodyKind::Static) != (t.motion_state == MotionState::Static)) return false;
+        // Stages read the motion state of removed bodies, too, through contacts that end in the next step.
+        if (!s.body_ids.alive_at(body) && t.motion_state != MotionState::Static) return false;
+    }
+    return true;
+}
+
+/// The lists of awake and of sleeping bodies hold exactly those.
+bool body_lists_are_right(const WorldState& s) {
+    const std::size_t bodies = s.body_ids.size();
+    if (!is_ascending_below(s.awake, bodies) || !is_ascending_below(s.asleep.bodies, bodies)) return false;
+    std::size_t awake = 0, asleep = 0;
+    for (const BodyTraits& t : s.bodies.traits) {
+        awake += t.motion_state == MotionState::Awake ? 1 : 0;
+        asleep += t.motion_state == MotionState::Asleep ? 1 : 0;
+    }
+    const auto all_are = [&](const std::vector<std::uint32_t>& list, MotionState state) {
+        return std::all_of(list.begin(), list.end(),
+                           [&](std::uint32_t body) { return s.bodies.traits[body].motion_state == state; });
+    };
+    if (s.awake.size() != awake || s.asleep.bodies.size() != asleep || !all_are(s.awake, MotionState::Awake) ||
+        !all_are(s.asleep.bodies, MotionState::Asleep))
+        return false;
+    const auto alive = [&](std::uint32_t body) { return s.body_ids.alive_at(body); };
+    return std::all_of(s.bodies_to_wake.begin(), s.bodies_to_wake.end(), alive) &&
+           std::all_of(s.exclusions.pairs().begin(), s.exclusions.pairs().end(),
+                       [&](broad::Pair pair) { return alive(pair.a) && alive(pair.b); });
+}
+
+bool is_finite(const Contact& c) {
+    float sum = c.friction + c.restitution + c.twist_impulse + c.nearest + c.approach;
+    for (const Vec3 v : {c.normal, c.tangent, c.offset_a, c.offset_b, c.first_normal, c.first_tangent, c.first_offset_a,
+                         c.first_offset_b, c.hit_offset_a, to_float(c.position_a), to_float(c.position_b)})
+        sum += v.x + v.y + v.z;
+    for (int i = 0; i < 4; ++i)
+        sum += c.x[i] + c.y[i] + c.separation[i] + c.first_separation[i] + c.impulse[i] + c.total_impulse[i];
+    for (const float impulse : c.friction_impulse) sum += impulse;
+    for (const Quat q : {c.rotation_a, c.rotation_b}) sum += q.x + q.y + q.z + q.w;
+    return std::isfinite(sum);
+}
+
+/// A contact belongs to its two colliders, or the next step ends it because one of them was removed or changed.
+bool contact_is_right(const WorldState& s, const Contact& c, broad::Pair pair, bool is_active) {
+    if (c.collider_a != pair.a || c.collider_b != pair.b || !(pair.a < pair.b) || pair.b >= s.colliders.size() ||
+        c.body_a >= s.body_ids.size() || c.body_b >= s.body_ids.size() || c.count > 4)
+        return false;
+    const auto is_current = [&](std::uint32_t collider, std::uint16_t generation) {
+        return s.collider_ids.alive_at(collider) && s.collider_ids.slots()[collider].generation == generation;
+    };
+    const bool current = is_current(c.collider_a, c.generation_a) && is_current(c.collider_b, c.generation_b);
+    const bool changed = ((s.changes[pair.a] | s.changes[pair.b]) & edited) != 0;
+    if (!current) return changed;
+    const Collider &a = s.colliders[pair.a], &b = s.colliders[pair.b];
+    if (c.body_a != a.body || c.body_b != b.body || c.body_a == c.body_b) return false;
+    if (c.sensor != (a.sensor || b.sensor) || c.sensor_is_b != b.sensor || (a.sensor && b.sensor)) return false;
+    const BodyTraits &ta = s.bodies.traits[c.body_a], &tb = s.bodies.traits[c.body_b];
+    if (is_active != (ta.motion_state == MotionState::Awake || tb.motion_state == MotionState::Awake)) return false;
+    if (changed) return is_finite(c) || ta.quarantined || tb.quarantined;  // the contacts of those end
+    if (ta.kind != BodyKind::Dynamic && tb.kind != BodyKind::Dynamic && !c.sensor) return false;
+    return is_finite(c) && (c.count == 0 || (is_unit(c.normal) && is_unit(c.tangent)));
+}
+
+/// Every pair is in one list and has one contact; all other contacts are free.
+bool contacts_are_right(const WorldState& s) {
+    std::vector<std::uint32_t> uses(s.contacts.size(), 0);
+    if (!count(s.free_contacts, uses)) return false;
+    for (const pairs::PairList* list : {&s.active, &s.resting}) {
+        if (list->pairs.size() != list->values.size() || !count(list->values, uses)) return false;
+        for (std::size_t i = 0; i < list->size(); ++i)
+            if ((i != 0 && !(list->pairs[i - 1] < list->pairs[i])) ||
+                !contact_is_right(s, s.contacts[list->values[i]], list->pairs[i], list == &s.active))
+                return false;
+    }
+    for (const broad::Pair pair : s.active.pairs)
+        if (std::binary_search(s.resting.pairs.begin(), s.resting.pairs.end(), pair)) return false;
+    return std::all_of(uses.begin(), uses.end(), [](std::uint32_t n) { return n == 1; });
+}
+
+}  // namespace
+
+std::string_view wrong_part(const WorldState& s) {
+    if (!check(s.settings)) return "settings out of range";
+    if (!sizes_agree(s)) return "lists of different sizes";
+    if (!kinds_are_right(s)) return "wrong motion states";
+    if (!shapes_are_right(s)) return "wrong shapes";
+    if (!colliders_are_right(s)) return "wrong colliders";
+    for (std::uint32_t body = 0; body < s.body_ids.size(); ++body)
+        if (s.body_ids.alive_at(body) && !body_is_right(s, body)) return "a wrong body";
+    if (!body_lists_are_right(s)) return "wrong lists of bodies";
+    if (!contacts_are_right(s)) return "wrong contacts";
+    return {};
+}
+
+}  // namespace fase

@@ -1,0 +1,84 @@
+// An index in which the Nth allocation fails, for every N and every structure.
+#include "fase/broad/registry.hpp"
+#include "fase/core/random.hpp"
+#include "fase/query/index.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/failing_memory.hpp"
+
+#ifndef FASE_TEST_SANITIZED
+namespace fase {
+namespace {
+
+using namespace test;
+
+Aabb random_box(Random& random) {
+    const Vec3 at{random.between(-9, 9), random.between(-9, 9), random.between(-9, 9)};
+    return {at, at + Vec3{1, 1, 1}};
+}
+
+/// A program of edits and commits; each is tried again when memory ran out. Returns what the index then finds.
+template <class S> std::vector<int> play(long n, long& failures) {
+    Index<int, S> index;
+    std::vector<typename Index<int, S>::Id> ids;
+    ids.reserve(400);
+    Random random(3);
+    const auto commit = [&] {
+        bool done = false;
+        EXPECT_TRUE(run_with_failing_allocation(n, [&] { done = index.commit(); })) << S::info.name << " at " << n;
+        EXPECT_TRUE(done || an_allocation_failed);
+        failures += an_allocation_failed ? 1 : 0;
+        if (!done) {
+            EXPECT_TRUE(index.commit());
+        }
+    };
+    for (int round = 0; round < 6; ++round) {
+        for (int i = 0; i < 40; ++i) {
+            const Aabb box = random_box(random);
+            typename Index<int, S>::Id id;
+            EXPECT_TRUE(run_with_failing_allocation(n, [&] { id = index.insert(box, 100 * round + i); }));
+            failures += an_allocation_failed ? 1 : 0;
+            if (!index.contains(id)) {
+                EXPECT_TRUE(an_allocation_failed);
+                EXPECT_EQ(index.size(), ids.size());
+                id = index.insert(box, 100 * round + i);
+            }
+            ids.push_back(id);
+        }
+        commit();
+        for (std::size_t i = 0; i < ids.size(); i += 3) EXPECT_TRUE(index.move(ids[i], random_box(random)));
+        for (std::size_t i = 0; i < ids.size(); i += 5) EXPECT_TRUE(index.set_awake(ids[i], round % 2 == 0));
+        commit();
+        for (int i = 0; i < 10; ++i) {
+            EXPECT_TRUE(index.erase(ids.back()));
+            ids.pop_back();
+        }
+        commit();
+        EXPECT_EQ(index.structure().broken_invariant(), "");
+    }
+    std::vector<int> found;
+    index.for_each([&](int value) { found.push_back(value); });
+    index.pairs([&](int a, int b) { found.push_back(1000 * a + b); });
+    index.awake_pairs([&](int a, int b) { found.push_back(1000 * a + b); });
+    index.overlapping(Aabb{{-3, -3, -3}, {3, 3, 3}}, [&](int value) { found.push_back(value); });
+    return found;
+}
+
+TEST(IndexOutOfMemory, changes_nothing_and_the_next_call_works) {
+    broad::for_each_structure([]<broad::Structure S>() {
+        long none = 0;
+        const std::vector<int> right = play<S>(-1, none);
+        EXPECT_EQ(none, 0);
+        for (long n = 0;; ++n) {
+            ASSERT_LT(n, 3000);
+            long failures = 0;
+            ASSERT_EQ(play<S>(n, failures), right) << S::info.name << " at " << n;
+            if (failures == 0) break;
+        }
+    });
+}
+
+}  // namespace
+}  // namespace fase
+#endif
