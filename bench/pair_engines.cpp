@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "bench/pair_engine.hpp"
+#include "fase/broad/registry.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::bench {
@@ -28,7 +29,7 @@ std::unique_ptr<PairEngine> make_fase_pairs(const PairScene& scene, const std::s
     return std::make_unique<FasePairs>(scene, name);
 }
 
-std::vector<PairEngineInfo> all_engines() {
+std::vector<PairEngineInfo> all_pair_engines() {
     std::vector<PairEngineInfo> all;
     broad::for_each_structure([&]<broad::Structure S>() {
         all.push_back({std::string(S::info.name), make_fase_pairs, false});
@@ -58,7 +59,7 @@ std::vector<PairEngineInfo> all_engines() {
 }  // namespace
 
 const std::vector<PairEngineInfo>& pair_engines() {
-    static const std::vector<PairEngineInfo> all = all_engines();
+    static const std::vector<PairEngineInfo> all = all_pair_engines();
     return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include "bench/query_contender.hpp"
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "fase/query/cast_ray.hpp"
 #include "fase/query/ray_mesh.hpp"
 #ifdef FASE_PEER_EMBREE

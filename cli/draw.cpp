@@ -13,6 +13,7 @@
 #include "cli/common/output.hpp"
 #include "cli/common/structure_choice.hpp"
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "fase/record/box_picture.hpp"
 #include "fase/record/recording/output_file.hpp"
 #include "fase/record/trace.hpp"

@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "bench/pairs.hpp"
+#include "fase/broad/brute_force.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/random.hpp"
 #include "fase/pairs/pair_tracker.hpp"

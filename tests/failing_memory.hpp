@@ -51,20 +51,24 @@ template <class F> bool run_with_failing_allocation(long n, const F& call) {
 
 }  // namespace fase::test
 
-void* operator new(std::size_t size) { return fase::test::allocate(size, 0); }
-void* operator new[](std::size_t size) { return fase::test::allocate(size, 0); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
+[[gnu::noinline]] void* operator new(std::size_t size) { return fase::test::allocate(size, 0); }
+[[gnu::noinline]] void* operator new[](std::size_t size) { return fase::test::allocate(size, 0); }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
     return fase::test::allocate(size, static_cast<std::size_t>(alignment));
 }
-void* operator new[](std::size_t size, std::align_val_t alignment) {
+[[gnu::noinline]] void* operator new[](std::size_t size, std::align_val_t alignment) {
     return fase::test::allocate(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { fase::test::release(memory); }
-void operator delete[](void* memory) noexcept { fase::test::release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { fase::test::release(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { fase::test::release(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { fase::test::release(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { fase::test::release(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { fase::test::release(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete[](void* memory) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept { fase::test::release(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    fase::test::release(memory);
+}
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+    fase::test::release(memory);
+}
 #endif

@@ -203,7 +203,7 @@ struct Worlds {
     std::string save() {
         saved = one.snapshot();
         saved_hash = one.hash();
-        if (other.snapshot() != saved) return "snapshots differ with structure " + other_structure;
+        if (other.hash() != saved_hash) return "hashes differ with structure " + other_structure;
         anew = *World::create({}, {.structure = anew_structure});
         if (const auto restored = anew->restore(saved); !restored) return "refused: " + restored.error().text();
         return anew->hash() == saved_hash ? "" : "the hash of a world restored from a snapshot differs";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/common/output.hpp"
+#include "fase/broad/registry.hpp"
 
 namespace fase::cli {
 

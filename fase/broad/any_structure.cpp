@@ -1,16 +1,29 @@
 /// Dispatches each call once on the variant, then runs the code of the concrete structure.
 #include "fase/broad/any_structure.hpp"
 
+#include <variant>
+
 #include "fase/broad/find_pairs.hpp"
+#include "fase/broad/registry.hpp"
 
 namespace fase::broad {
+namespace {
+
+template <class> struct VariantOf;
+template <class... S> struct VariantOf<StructureList<S...>> { using type = std::variant<S...>; };
+
+}  // namespace
+
+struct AnyStructure::Held {
+    VariantOf<AllStructures>::type structure;
+};
 
 Result<AnyStructure> AnyStructure::named(std::string_view name) {
     AnyStructure found;
     bool known = false;
     for_each_structure([&]<Structure S>() {
         if (S::info.name != name) return;
-        found.structure_.template emplace<S>();
+        found.held_->structure.template emplace<S>();
         known = true;
     });
     if (!known) {
@@ -26,9 +39,18 @@ std::string AnyStructure::names() {
     return all;
 }
 
-AnyStructure::AnyStructure() {
+AnyStructure::AnyStructure(const AnyStructure& other) : held_(std::make_unique<Held>(*other.held_)) {}
+AnyStructure& AnyStructure::operator=(const AnyStructure& other) {
+    if (this != &other) held_ = std::make_unique<Held>(*other.held_);
+    return *this;
+}
+AnyStructure::AnyStructure(AnyStructure&&) noexcept = default;
+AnyStructure& AnyStructure::operator=(AnyStructure&&) noexcept = default;
+AnyStructure::~AnyStructure() = default;
+
+AnyStructure::AnyStructure() : held_(std::make_unique<Held>()) {
     for_each_structure([&]<Structure S>() {
-        if (S::info.name == default_structure) structure_.template emplace<S>();
+        if (S::info.name == default_structure) held_->structure.template emplace<S>();
     });
 }
 
@@ -37,7 +59,7 @@ void AnyStructure::insert(std::span<const Move> boxes) {
         [&](auto& s) {
             for (const Move& m : boxes) s.insert(m.proxy, m.box);
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::move(TaskRunner* tasks, std::span<const Move> boxes) {
@@ -49,7 +71,7 @@ void AnyStructure::move(TaskRunner* tasks, std::span<const Move> boxes) {
                 for (const Move& m : boxes) s.move(m.proxy, m.box);
             }
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::insert(std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
@@ -57,7 +79,7 @@ void AnyStructure::insert(std::span<const Proxy> proxies, std::span<const Aabb> 
         [&](auto& s) {
             for (const Proxy p : proxies) s.insert(p, by_proxy[p]);
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
@@ -69,7 +91,7 @@ void AnyStructure::move(TaskRunner* tasks, std::span<const Proxy> proxies, std::
                 for (const Proxy p : proxies) s.move(p, by_proxy[p]);
             }
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::erase(std::span<const Proxy> proxies) {
@@ -77,11 +99,11 @@ void AnyStructure::erase(std::span<const Proxy> proxies) {
         [&](auto& s) {
             for (const Proxy p : proxies) s.erase(p);
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::clear() {
-    std::visit([](auto& s) { s.clear(); }, structure_);
+    std::visit([](auto& s) { s.clear(); }, held_->structure);
 }
 
 void AnyStructure::set_awake(std::span<const Proxy> proxies, bool awake) {
@@ -89,7 +111,7 @@ void AnyStructure::set_awake(std::span<const Proxy> proxies, bool awake) {
         [&](auto& s) {
             for (const Proxy p : proxies) s.set_awake(p, awake);
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::build(std::span<const Move> boxes) {
@@ -103,7 +125,7 @@ void AnyStructure::build(std::span<const Move> boxes) {
                 s.commit();
             }
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::convert_to(AnyStructure other) {
@@ -121,7 +143,7 @@ void AnyStructure::convert_to(AnyStructure other) {
         other.set_awake(resting, false);
         other.commit();
     }
-    structure_ = std::move(other.structure_);
+    held_ = std::move(other.held_);
 }
 
 void AnyStructure::build_static(std::span<const Move> boxes) {
@@ -130,12 +152,12 @@ void AnyStructure::build_static(std::span<const Move> boxes) {
             if constexpr (BuildsStatic<S>) s.build_static(boxes);
             return BuildsStatic<S>;
         },
-        structure_);
+        held_->structure);
     if (!built) build(boxes);
 }
 
 void AnyStructure::commit() {
-    std::visit([](auto& s) { s.commit(); }, structure_);
+    std::visit([](auto& s) { s.commit(); }, held_->structure);
 }
 
 void AnyStructure::commit(TaskRunner& tasks) {
@@ -147,19 +169,19 @@ void AnyStructure::commit(TaskRunner& tasks) {
                 s.commit();
             }
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::find_pairs(std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs(s, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_pairs(s, out); }, held_->structure);
 }
 
 void AnyStructure::find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs(tasks, s, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_pairs(tasks, s, out); }, held_->structure);
 }
 
 void AnyStructure::find_awake_pairs(std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_awake_pairs(s, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_awake_pairs(s, out); }, held_->structure);
 }
 
 void AnyStructure::find_pairs_of(std::span<const Move> query_boxes, std::vector<Pair>& out) const {
@@ -168,12 +190,12 @@ void AnyStructure::find_pairs_of(std::span<const Move> query_boxes, std::vector<
 
 void AnyStructure::find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                                  std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs_of(s, query_boxes, is_query, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_pairs_of(s, query_boxes, is_query, out); }, held_->structure);
 }
 
 void AnyStructure::find_pairs_of(TaskRunner& tasks, std::span<const Move> query_boxes,
                                  std::span<const std::uint8_t> is_query, std::vector<Pair>& out) const {
-    std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, query_boxes, is_query, out); }, structure_);
+    std::visit([&](const auto& s) { broad::find_pairs_of(tasks, s, query_boxes, is_query, out); }, held_->structure);
 }
 
 void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& other, std::vector<Pair>& out) const {
@@ -181,27 +203,28 @@ void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& oth
     if (tasks.threads() == 1) return find_pairs_between(other, out);
     const bool is_smaller = size() < other.size();
     std::vector<Move> query_boxes;
-    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); }, is_smaller ? structure_ : other.structure_);
+    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); },
+               is_smaller ? held_->structure : other.held_->structure);
     (is_smaller ? other : *this).find_pairs_of(tasks, query_boxes, {}, out);
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
     std::visit(
         [&]<class S>(const S& mine) {
-            if (const S* same_type = std::get_if<S>(&other.structure_)) {
+            if (const S* same_type = std::get_if<S>(&other.held_->structure)) {
                 broad::find_pairs_between(mine, *same_type, out);
                 return;
             }
             std::vector<Move> query_boxes;
             if (size() > other.size()) {
-                std::visit([&](const auto& theirs) { stored_boxes(theirs, query_boxes); }, other.structure_);
+                std::visit([&](const auto& theirs) { stored_boxes(theirs, query_boxes); }, other.held_->structure);
                 broad::find_pairs_of(mine, query_boxes, {}, out);
             } else {
                 stored_boxes(mine, query_boxes);
                 other.find_pairs_of(query_boxes, out);
             }
         },
-        structure_);
+        held_->structure);
 }
 
 void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
@@ -212,61 +235,61 @@ void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
 }
 
 void AnyStructure::traverse(const BoxRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
-    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, held_->structure);
 }
 
 void AnyStructure::traverse(const FrustumRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
-    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, held_->structure);
 }
 
 void AnyStructure::traverse(const Everything& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
-    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, held_->structure);
 }
 
 void AnyStructure::traverse_any(const AnyRegion& region, FunctionRef<bool(Proxy, const Aabb&)> visit) const {
-    std::visit([&](const auto& s) { s.traverse(region, visit); }, structure_);
+    std::visit([&](const auto& s) { s.traverse(region, visit); }, held_->structure);
 }
 
 void AnyStructure::nearest_first(const RayMeasure& measure, float limit,
                                  FunctionRef<float(Proxy, const Aabb&, float)> visit) const {
-    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, structure_);
+    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, held_->structure);
 }
 
 void AnyStructure::nearest_first(const PointMeasure& measure, float limit,
                                  FunctionRef<float(Proxy, const Aabb&, float)> visit) const {
-    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, structure_);
+    std::visit([&](const auto& s) { broad::nearest_first(s, measure, limit, visit); }, held_->structure);
 }
 
 void AnyStructure::cull(const FrustumRegion& region, FunctionRef<void(std::span<const Proxy>, bool)> take) const {
-    std::visit([&](const auto& s) { broad::cull(s, region, take); }, structure_);
+    std::visit([&](const auto& s) { broad::cull(s, region, take); }, held_->structure);
 }
 
 void AnyStructure::for_each_leaf(FunctionRef<void(const Leaf&)> visit) const {
-    std::visit([&](const auto& s) { s.for_each_leaf(visit); }, structure_);
+    std::visit([&](const auto& s) { s.for_each_leaf(visit); }, held_->structure);
 }
 
 StructureStats AnyStructure::stats() const {
-    return std::visit([](const auto& s) { return stats_of(s); }, structure_);
+    return std::visit([](const auto& s) { return stats_of(s); }, held_->structure);
 }
 
 bool AnyStructure::is_awake(Proxy p) const {
-    return std::visit([&](const auto& s) { return s.is_awake(p); }, structure_);
+    return std::visit([&](const auto& s) { return s.is_awake(p); }, held_->structure);
 }
 
 StructureInfo AnyStructure::info() const {
-    return std::visit([]<class S>(const S&) -> StructureInfo { return S::info; }, structure_);
+    return std::visit([]<class S>(const S&) -> StructureInfo { return S::info; }, held_->structure);
 }
 
 std::size_t AnyStructure::size() const {
-    return std::visit([](const auto& s) { return s.size(); }, structure_);
+    return std::visit([](const auto& s) { return s.size(); }, held_->structure);
 }
 
 std::size_t AnyStructure::bytes() const {
-    return std::visit([](const auto& s) { return s.bytes(); }, structure_);
+    return std::visit([](const auto& s) { return s.bytes(); }, held_->structure);
 }
 
 std::string AnyStructure::broken_invariant() const {
-    return std::visit([](const auto& s) { return s.broken_invariant(); }, structure_);
+    return std::visit([](const auto& s) { return s.broken_invariant(); }, held_->structure);
 }
 
 void AnyStructure::cells(std::vector<DrawnCell>& out) const {
@@ -274,7 +297,7 @@ void AnyStructure::cells(std::vector<DrawnCell>& out) const {
         [&]<class S>(const S& s) {
             if constexpr (Drawable<S>) s.cells(out);
         },
-        structure_);
+        held_->structure);
 }
 
 }  // namespace fase::broad

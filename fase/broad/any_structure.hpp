@@ -1,11 +1,15 @@
 #pragma once
 /// A structure chosen by name at run time.
+#include <concepts>
+#include <memory>
 #include <span>
-#include <variant>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "fase/broad/cull.hpp"
-#include "fase/broad/registry.hpp"
 #include "fase/broad/stats.hpp"
+#include "fase/broad/structure.hpp"
 #include "fase/core/detail/function_ref.hpp"
 #include "fase/core/result.hpp"
 
@@ -27,6 +31,12 @@ public:
     [[nodiscard]] static std::string names();
 
     AnyStructure();
+    AnyStructure(const AnyStructure& other);
+    AnyStructure& operator=(const AnyStructure& other);
+    /// A structure that was moved from may only be destroyed or assigned to.
+    AnyStructure(AnyStructure&& other) noexcept;
+    AnyStructure& operator=(AnyStructure&& other) noexcept;
+    ~AnyStructure();
 
     void insert(std::span<const Move> boxes);
     /// Moves stored boxes; each proxy at most once.
@@ -105,9 +115,8 @@ public:
     void cells(std::vector<DrawnCell>& out) const;
 
 private:
-    template <class> struct VariantOf;
-    template <class... S> struct VariantOf<StructureList<S...>> { using type = std::variant<S...>; };
-    VariantOf<AllStructures>::type structure_;
+    struct Held;  // a variant over the registry, which users of this header do not parse
+    std::unique_ptr<Held> held_;
 
     void move(TaskRunner* tasks, std::span<const Move> boxes);
     void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "fase/broad/registry.hpp"
+
 namespace fase::broad {
 namespace {
 

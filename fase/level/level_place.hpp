@@ -6,6 +6,11 @@
 
 namespace fase::level {
 
+/// Returns the point at `share` of the way from a to b.
+[[nodiscard]] constexpr Point between(Point a, Point b, double share) {
+    return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share};
+}
+
 /// Returns twice the signed area of the triangle a, b, c: positive if c is to the left of the line from a to b.
 /// Swapping a and b negates the result exactly.
 [[nodiscard]] constexpr double orient2d(Point a, Point b, Point c) {

@@ -15,8 +15,6 @@ constexpr std::size_t max_steps = 1'000'000;
 /// Views with a smaller sine of their angle are not followed.
 constexpr double min_sine = 0x1p-40;
 
-Point between(Point a, Point b, double share) { return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share}; }
-
 /// Clips a polygon to the left, or to the right, of the line from a to b.
 void clip(const std::vector<Point>& polygon, Point a, Point b, bool left, std::vector<Point>& out) {
     out.clear();

@@ -3,12 +3,11 @@
 
 #include <limits>
 
+#include "fase/narrow/detail/infinity.hpp"
 #include "fase/narrow/detail/penetration.hpp"
 
 namespace fase::narrow {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Converts the distance of the cores and a closest point on a's core to those of the surfaces.
 Distance with_radii(double core_distance, Vec3d on_a, Vec3d normal, double radius_a, double radius_b) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "fase/broad/row_grid.hpp"
 #include "fase/core/detail/check.hpp"
 #include "fase/core/detail/collect.hpp"
 

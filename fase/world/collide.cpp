@@ -42,7 +42,7 @@ bool reuse_manifold(Contact& c, const BodyMotion& a, const BodyMotion& b, float 
     const Vec3 n = c.first_normal;
     if (!(moved_a.tilt(n) < max_tilt && moved_b.tilt(n) < max_tilt)) return false;
     const Vec3 second = cross(n, c.first_tangent);
-    float separation[4];
+    float separation[4] = {};
     for (int i = 0; i < c.count; ++i) {
         const Vec3 from_centre = c.first_tangent * c.x[i] + second * c.y[i];
         const Vec3 moved = moved_b.of(c.first_offset_b + from_centre) - moved_a.of(c.first_offset_a + from_centre);
@@ -161,10 +161,10 @@ struct NearbyFrames {
         const Quat back = conjugate(pose_a.rotation);
         Vec3d shift;
         if (is_half_space(a)) {
-            const Vec3d up = rotate(to_double(pose_a.rotation), Vec3d{0, 1, 0});
+            const Vec3d up = rotate(normalized(to_double(pose_a.rotation)), Vec3d{0, 1, 0});
             shift = between - up * dot(up, between);
         } else if (is_half_space(b)) {
-            const Vec3d up = rotate(to_double(pose_b.rotation), Vec3d{0, 1, 0});
+            const Vec3d up = rotate(normalized(to_double(pose_b.rotation)), Vec3d{0, 1, 0});
             b_in_a = {rotate(back, to_float(up * dot(up, between))), back * pose_b.rotation};
             origin_a = pose_a.position;
             return;

@@ -34,14 +34,13 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
         if (setup.threads < 0 || setup.threads > 1024)
             return Error{Status::BadArgument, "Setup.threads",
                          "found " + std::to_string(setup.threads) + "; expected 0 to 1024", "0 uses all cores"};
-        if (auto named =
-                broad::AnyStructure::named(setup.structure == "auto" ? broad::default_structure : setup.structure);
-            !named) {
-            Error error = named.error();
-            error.where = "Setup.structure";
-            error.remedy = "or leave it at \"auto\"";
-            return error;
-        }
+        if (setup.structure != "auto")
+            if (auto named = broad::AnyStructure::named(setup.structure); !named) {
+                Error error = named.error();
+                error.where = "Setup.structure";
+                error.remedy = "or leave it at \"auto\"";
+                return error;
+            }
         auto state = std::make_unique<WorldState>();
         const std::uint16_t number = next_world_number();
         state->body_ids = IdPool<BodyTag>(number);

@@ -7,10 +7,10 @@
 namespace fase::bench {
 namespace {
 
-const SuddenProgress never_stop = [](std::uint64_t, std::uint64_t, std::string_view) { return true; };
+const SuddenProgress go_on = [](std::uint64_t, std::uint64_t, std::string_view) { return true; };
 
 TEST(Sudden, EveryStructureFindsTheRightPairsInEveryEvent) {
-    const auto rows = measure_sudden({.boxes = 6000, .frames = 6, .structures = "auto,row_grid,octree"}, never_stop);
+    const auto rows = measure_sudden({.boxes = 6000, .frames = 6, .structures = "auto,row_grid,octree"}, go_on);
     ASSERT_TRUE(rows) << rows.error().text();
     std::set<std::string> events;
     for (const SuddenRow& row : *rows) {
@@ -25,10 +25,10 @@ TEST(Sudden, EveryStructureFindsTheRightPairsInEveryEvent) {
 }
 
 TEST(Sudden, RefusesFewBoxesAndUnknownStructures) {
-    const auto few = measure_sudden({.boxes = 10}, never_stop);
+    const auto few = measure_sudden({.boxes = 10}, go_on);
     ASSERT_FALSE(few);
     EXPECT_EQ(few.status(), Status::BadArgument);
-    const auto unknown = measure_sudden({.structures = "row_grid,octopus"}, never_stop);
+    const auto unknown = measure_sudden({.structures = "row_grid,octopus"}, go_on);
     ASSERT_FALSE(unknown);
     EXPECT_NE(unknown.error().text().find("octopus"), std::string::npos);
 }

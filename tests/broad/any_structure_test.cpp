@@ -1,4 +1,5 @@
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 
 #include <gtest/gtest.h>
 

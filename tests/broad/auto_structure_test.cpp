@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fase/broad/registry.hpp"
 #include "fase/pairs/pair_finder.hpp"
 #include "tests/conformance/scenes.hpp"
 

@@ -47,7 +47,7 @@ TEST(Bsp, WeighsSplitsAgainstBalance) {
 }
 
 TEST(Bsp, TestsFewBoxesInASmallQuery) {
-    const std::vector<Move> boxes = random_cubes(20000, 100, 3);
+    const std::vector<Move> boxes = standing_cubes(20000, 100, 3);
     Bsp tree;
     tree.build(boxes);
     std::size_t tests = 0, met = 0;
@@ -61,7 +61,7 @@ TEST(Bsp, AcceptsInvalidSettings) {
     const float nan = std::nanf("");
     for (const int number : {-7, 0, 1, 1 << 30}) {
         Bsp tree(Bsp::Settings{.weights = {nan, -1}, .candidates = number, .leaf_boxes = number});
-        ASSERT_NO_FATAL_FAILURE(expect_sound(tree, random_cubes(300, 10, 7)));
+        ASSERT_NO_FATAL_FAILURE(expect_sound(tree, standing_cubes(300, 10, 7)));
     }
 }
 

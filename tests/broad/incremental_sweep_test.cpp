@@ -8,6 +8,7 @@
 
 #include "fase/broad/brute_force.hpp"
 #include "fase/core/random.hpp"
+#include "tests/broad/drawn_boxes.hpp"
 
 namespace fase::broad {
 namespace {
@@ -42,8 +43,6 @@ struct Both {
         ASSERT_EQ(pairs, expected);
     }
 };
-
-Aabb cube(Vec3 at, float side = 1) { return {at, at + Vec3{side, side, side}}; }
 
 Both crowd(std::size_t count, float world, std::uint64_t seed, double max_swaps_per_box = 1000) {
     Random random(seed);

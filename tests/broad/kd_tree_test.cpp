@@ -27,7 +27,7 @@ TEST_P(BothRules, AreCorrectOnThirdPartySets) {
 }
 
 TEST_P(BothRules, TestFewBoxesInASmallQuery) {
-    const std::vector<Move> boxes = random_cubes(20000, 100, 3);
+    const std::vector<Move> boxes = standing_cubes(20000, 100, 3);
     KdTree tree = by_rule(GetParam());
     tree.build(boxes);
     std::size_t tests = 0, met = 0;
@@ -83,7 +83,7 @@ TEST(KdTree, StoresStraddlingBoxesInASeparateChild) {
 }
 
 TEST(KdTree, BuildsLargerLeavesWithTheirSettings) {
-    const std::vector<Move> boxes = random_cubes(2000, 40, 6);
+    const std::vector<Move> boxes = standing_cubes(2000, 40, 6);
     KdTree fine(KdTree::Settings{.leaf_boxes = 1}), coarse(KdTree::Settings{.leaf_boxes = 64}),
         costly(KdTree::Settings{.leaf_boxes = 1, .node_cost = 50});
     for (KdTree* tree : {&fine, &coarse, &costly}) ASSERT_NO_FATAL_FAILURE(expect_sound(*tree, boxes));
@@ -95,13 +95,13 @@ TEST(KdTree, BuildsLargerLeavesWithTheirSettings) {
 TEST(KdTree, AcceptsInvalidSettings) {
     for (const int number : {-7, 0, 1, 1 << 30}) {
         KdTree tree(KdTree::Settings{.leaf_boxes = number, .bins = number, .node_cost = -1});
-        ASSERT_NO_FATAL_FAILURE(expect_sound(tree, random_cubes(300, 10, 7)));
+        ASSERT_NO_FATAL_FAILURE(expect_sound(tree, standing_cubes(300, 10, 7)));
     }
 }
 
 TEST(KdTree, PassesABranchInOneCall) {
     KdTree tree;
-    tree.build(random_cubes(1000, 20, 8));
+    tree.build(standing_cubes(1000, 20, 8));
     std::size_t calls = 0, tests = 0, taken = 0;
     tree.cull(CountingRegion{cube({-5, -5, -5}, 50), tests}, [&](std::span<const Proxy> proxies, bool inside) {
         EXPECT_TRUE(inside);
@@ -115,7 +115,7 @@ TEST(KdTree, PassesABranchInOneCall) {
 
 TEST(KdTree, AppliesChangesAtCommit) {
     KdTree tree;
-    tree.build(random_cubes(500, 30, 9));
+    tree.build(standing_cubes(500, 30, 9));
     const auto hits_at = [&](const Aabb& box) {
         std::size_t hits = 0;
         tree.traverse(BoxRegion{box}, [&](Proxy, const Aabb&) { return ++hits > 0; });

@@ -18,7 +18,7 @@ inline std::vector<Move> numbered(const std::vector<Aabb>& boxes) {
     for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
     return moves;
 }
-inline std::vector<Move> random_cubes(std::size_t count, float world, std::uint64_t seed) {
+inline std::vector<Move> standing_cubes(std::size_t count, float world, std::uint64_t seed) {
     Random random(seed);
     std::vector<Aabb> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(cube(place(random, 0, world)));

@@ -1,5 +1,6 @@
 /// Tests `fase draw`: pictures of the cells of structures.
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "fase/record/trace.hpp"
 #include "tests/cli/fase_program.hpp"
 
@@ -7,7 +8,7 @@ namespace fase::cli {
 namespace {
 
 /// Rows of 60 boxes on the ground: the first 20 are static, the next 20 asleep; from frame 1 on, the last 25 rise.
-std::string write_trace(const TemporaryFolder& folder, std::uint32_t frames = 3) {
+std::string write_small_trace(const TemporaryFolder& folder, std::uint32_t frames = 3) {
     const std::string name = folder / "boxes.aabt";
     auto writer = record::TraceWriter::create(name, 60);
     EXPECT_TRUE(writer);
@@ -37,7 +38,7 @@ std::size_t count_of(const std::string& text, const std::string& word) {
 
 TEST(Draw, WritesEachBoxInItsColourAndTheCells) {
     const TemporaryFolder folder;
-    const std::string trace = write_trace(folder), file = folder / "kd.svg";
+    const std::string trace = write_small_trace(folder), file = folder / "kd.svg";
     const Outcome drawn = run_fase({"draw", trace, "--structure", "kd_tree", "-o", file});
     ASSERT_EQ(drawn.code, 0) << drawn.err;
     EXPECT_NE(drawn.out.find("kd.svg: kd_tree"), std::string::npos) << drawn.out;
@@ -56,7 +57,7 @@ TEST(Draw, WritesEachBoxInItsColourAndTheCells) {
 
 TEST(Draw, UpdatesTheStructureThroughTheFramesBefore) {
     const TemporaryFolder folder;
-    const std::string trace = write_trace(folder), file = folder / "later.svg";
+    const std::string trace = write_small_trace(folder), file = folder / "later.svg";
     ASSERT_EQ(run_fase({"draw", trace, "--frame", "2", "--plane", "xy", "-o", file}).code, 0);
     const std::string svg = read_file(file);
     EXPECT_NE(svg.find("plane xy, frame 2"), std::string::npos);
@@ -66,7 +67,7 @@ TEST(Draw, UpdatesTheStructureThroughTheFramesBefore) {
 
 TEST(Draw, WritesOnePicturePerStructureIntoAFolder) {
     const TemporaryFolder folder;
-    const std::string trace = write_trace(folder), pictures = folder / "pictures";
+    const std::string trace = write_small_trace(folder), pictures = folder / "pictures";
     std::filesystem::create_directory(pictures);
     const Outcome drawn = run_fase({"draw", trace, "--structure", "all", "-o", pictures});
     ASSERT_EQ(drawn.code, 0) << drawn.err;
@@ -106,7 +107,7 @@ TEST(Draw, ShowsInfiniteBoxesAndPoints) {
 
 TEST(Draw, RefusesInvalidOptions) {
     const TemporaryFolder folder;
-    const std::string trace = write_trace(folder), file = folder / "x.svg";
+    const std::string trace = write_small_trace(folder), file = folder / "x.svg";
     const auto expect_refused = [&](std::vector<std::string> options, int code, const std::string& words) {
         options.insert(options.begin(), "draw");
         expect_error_line(run_fase(options), code, words);

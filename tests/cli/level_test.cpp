@@ -126,10 +126,10 @@ TEST(LevelCommand, RefusesInOneLineAndWritesNothing) {
     refused({one, "MAP01", "--svg", folder / "x.svg", "-o", one}, 3, "one.wad");
     EXPECT_FALSE(fs::exists(folder / "x.svg"));
 
-    level::Map broken = level::pool_map();
-    broken.lines[3].to = 500;
-    write_wad(folder / "broken.wad", level::wad_of(broken));
-    refused({folder / "broken.wad", "-o", folder / "out.wad"}, 2, "MAP01 LINEDEFS[3]: found vertex 500");
+    level::Wad broken = level::wad_of(level::pool_map());
+    broken.lumps[*broken.find_in_map(0, "LINEDEFS")].bytes.pop_back();
+    write_wad(folder / "broken.wad", broken);
+    refused({folder / "broken.wad", "-o", folder / "out.wad"}, 2, "LINEDEFS");
     EXPECT_FALSE(fs::exists(folder / "out.wad"));
 }
 

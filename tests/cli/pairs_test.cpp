@@ -1,5 +1,6 @@
 /// Tests `fase pairs`: its output, its checks, its refusals.
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "tests/cli/made_traces.hpp"
 
 namespace fase::cli {

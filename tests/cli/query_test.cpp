@@ -1,12 +1,13 @@
 /// Tests `fase query`: its output, its checks, its refusals.
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "tests/cli/made_traces.hpp"
 
 namespace fase::cli {
 namespace {
 
-const std::vector<std::string> row_keys{"structure",         "build_ms", "rays_per_second", "boxes_per_second",
-                                        "frusta_per_second", "hits",     "checked"};
+const std::vector<std::string> query_keys{"structure",         "build_ms", "rays_per_second", "boxes_per_second",
+                                          "frusta_per_second", "hits",     "checked"};
 const std::vector<std::string> few{"--rays", "200", "--boxes", "200", "--frusta", "20"};
 
 Outcome query(const std::string& file, std::vector<std::string> more) {
@@ -21,7 +22,7 @@ TEST(Query, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const Rows rows(outcome.out);
     ASSERT_EQ(rows.size(), 1u);
-    expect_keys(rows[0], row_keys);
+    expect_keys(rows[0], query_keys);
     EXPECT_EQ(text_at(rows[0], "structure"), "auto");
     EXPECT_TRUE(is_true(rows[0], "checked"));
     EXPECT_GT(number_at(rows[0], "hits"), 0);

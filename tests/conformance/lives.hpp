@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "tests/conformance/scenes.hpp"
 
 namespace fase::conformance {

@@ -94,21 +94,21 @@ TEST_P(EverySearch, GivesTheSameResultsAfterABulkBuild) {
     EXPECT_EQ(run.tested.broken_invariant(), "");
 }
 
-struct Hit {
+struct Reached {
     float at = broad::infinite_distance;
     Proxy proxy = no_index;
-    friend auto operator<=>(const Hit&, const Hit&) = default;
+    friend auto operator<=>(const Reached&, const Reached&) = default;
 };
 
 /// The nearest hit, and all hits sorted.
-template <broad::Measure M> std::pair<Hit, std::vector<Hit>> hits_of(const AnyStructure& s, const M& measure) {
-    Hit nearest;
+template <broad::Measure M> std::pair<Reached, std::vector<Reached>> hits_of(const AnyStructure& s, const M& measure) {
+    Reached nearest;
     s.nearest_first(measure, broad::infinite_distance, [&](Proxy p, const Aabb& box, float at) {
         EXPECT_EQ(at, measure.distance(box, broad::infinite_distance));
-        nearest = std::min(nearest, Hit{at, p});
+        nearest = std::min(nearest, Reached{at, p});
         return nearest.at;
     });
-    std::vector<Hit> all;
+    std::vector<Reached> all;
     s.nearest_first(measure, broad::infinite_distance, [&](Proxy p, const Aabb&, float at) {
         all.push_back({at, p});
         return broad::infinite_distance;

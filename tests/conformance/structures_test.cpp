@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "fase/broad/find_pairs.hpp"
+#include "fase/broad/registry.hpp"
 #include "tests/conformance/lives.hpp"
 
 namespace fase::conformance {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
 
 namespace fase::conformance {

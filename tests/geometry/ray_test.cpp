@@ -9,7 +9,7 @@ namespace fase {
 namespace {
 
 constexpr float miss = RayBoxTest::miss;
-constexpr float inf = Aabb::infinity;
+constexpr float infinite = Aabb::infinity;
 const Aabb unit{{-1, -1, -1}, {1, 1, 1}};
 
 float entry(const Ray& ray, const Aabb& box, float max_distance = miss) {
@@ -52,8 +52,8 @@ TEST(Ray, meets_flat_point_and_infinite_boxes_but_no_empty_box) {
     EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}, 10}, {{-1, 0, -1}, {1, 0, 1}}), 5, 1e-5);
     EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}, 10}, {{0, 2, 0}, {0, 2, 0}}), 3, 1e-5);
     EXPECT_EQ(entry({{0, 5, 0}, {0, -1, 0}, 10}, Aabb::everything()), 0);
-    EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}}, {{-inf, -inf, -inf}, {inf, 0, inf}}), 5, 1e-5);
-    EXPECT_EQ(entry({{0, 5, 0}, {0, 1, 0}}, {{-inf, -inf, -inf}, {inf, 0, inf}}), miss);
+    EXPECT_NEAR(entry({{0, 5, 0}, {0, -1, 0}}, {{-infinite, -infinite, -infinite}, {infinite, 0, infinite}}), 5, 1e-5);
+    EXPECT_EQ(entry({{0, 5, 0}, {0, 1, 0}}, {{-infinite, -infinite, -infinite}, {infinite, 0, infinite}}), miss);
     EXPECT_EQ(entry({{0, 0, 0}, {0, -1, 0}}, Aabb{}), miss);
     EXPECT_EQ(entry({{0, 0, 0}, {0.6f, -0.8f, 0}}, Aabb{}), miss);
 }

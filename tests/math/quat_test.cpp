@@ -10,7 +10,7 @@
 namespace fase {
 namespace {
 
-double distance(const Mat3d& a, const Mat3d& b) { return length(a.x - b.x) + length(a.y - b.y) + length(a.z - b.z); }
+double difference(const Mat3d& a, const Mat3d& b) { return length(a.x - b.x) + length(a.y - b.y) + length(a.z - b.z); }
 double rotation_difference(Quatd a, Quatd b) {
     const double same = length_squared(Quatd{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w});
     const double opposite = length_squared(Quatd{a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w});
@@ -45,7 +45,7 @@ RC_GTEST_PROP(Quat, products_apply_the_right_one_first, (const Quatd& a, const Q
 RC_GTEST_PROP(Quat, its_matrix_is_the_same_rotation_and_orthonormal, (const Quatd& q, const Vec3d& v)) {
     const Mat3d m = to_matrix(q);
     RC_ASSERT(length(m * v - rotate(q, v)) <= 1e-14 * length(v));
-    RC_ASSERT(distance(m * transpose(m), Mat3d::identity()) <= 1e-14);
+    RC_ASSERT(difference(m * transpose(m), Mat3d::identity()) <= 1e-14);
     RC_ASSERT(std::abs(determinant(m) - 1) <= 1e-14);
 }
 

@@ -24,7 +24,7 @@ std::vector<Pair> reference_pairs(std::span<const Aabb> boxes) {
     for (const Aabb& box : boxes) moves.push_back({static_cast<Proxy>(moves.size()), box});
     return reference_pairs(std::span<const Move>(moves));
 }
-std::vector<Pair> sorted(std::vector<Pair> pairs) {
+std::vector<Pair> in_order(std::vector<Pair> pairs) {
     std::sort(pairs.begin(), pairs.end());
     return pairs;
 }
@@ -41,7 +41,7 @@ TEST(FramePairs, FindsTheSamePairsAsBruteForceInListsOfAnyLengthSequentially) {
             ASSERT_TRUE(frame.sort(*serial, boxes));
             EXPECT_EQ(frame.size(), count);
             frame.find(*serial, found);
-            ASSERT_TRUE(sorted(found) == reference_pairs(boxes)) << count;
+            ASSERT_TRUE(in_order(found) == reference_pairs(boxes)) << count;
         }
     }
 }

@@ -1,4 +1,5 @@
 #include "fase/pairs/pair_tracker.hpp"
+#include "fase/broad/registry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fase/broad/any_structure.hpp"
+#include "fase/broad/registry.hpp"
 
 namespace fase {
 

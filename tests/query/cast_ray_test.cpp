@@ -82,16 +82,16 @@ TEST_P(EveryRay, ReturnsTheSmallestProxyOfEqualDistances) {
 
 TEST_P(EveryRay, RespectsTheLengthOfTheRay) {
     const AnyStructure structure = filled(GetParam(), {{{2, 0, 0}, {3, 1, 1}}});
-    EXPECT_TRUE(any_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, 2}));
-    EXPECT_FALSE(any_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, 1.999f}));
+    EXPECT_TRUE(any_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, 2}));
+    EXPECT_FALSE(any_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, 1.999f}));
     const auto late = [](Proxy, const Aabb&, float, float) { return 2.5f; };
-    EXPECT_FALSE(nearest_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, 2}, late))
+    EXPECT_FALSE(nearest_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, 2}, late))
         << "the object is beyond the end of the ray";
-    EXPECT_EQ(nearest_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, 3}, late).value_or(Hit{}), (Hit{2.5f, 0}));
+    EXPECT_EQ(nearest_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, 3}, late).value_or(Hit{}), (Hit{2.5f, 0}));
     const auto never = [](Proxy, const Aabb&, float, float) { return broad::infinite_distance; };
-    EXPECT_FALSE(nearest_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, Aabb::infinity}, never));
+    EXPECT_FALSE(nearest_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, Aabb::infinity}, never));
     const auto nan = [](Proxy, const Aabb&, float, float) { return std::nanf(""); };
-    EXPECT_FALSE(nearest_hit(structure, {{0, 0.5, 0.5}, {1, 0, 0}, Aabb::infinity}, nan));
+    EXPECT_FALSE(nearest_hit(structure, Ray{{0, 0.5, 0.5}, {1, 0, 0}, Aabb::infinity}, nan));
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryRay, ::testing::ValuesIn(structure_names()), name_of);

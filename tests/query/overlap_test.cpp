@@ -14,7 +14,7 @@ std::vector<Proxy> found_by(const AnyStructure& structure, const auto& region) {
 }
 
 /// Returns the distance from a point to a box, in long double.
-long double distance(Vec3d p, const Aabb& box) {
+long double exact_distance(Vec3d p, const Aabb& box) {
     long double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const long double nearest = std::clamp<long double>(p[axis], box.lo[axis], box.hi[axis]);
@@ -23,9 +23,9 @@ long double distance(Vec3d p, const Aabb& box) {
     return std::sqrt(sum);
 }
 /// The same from a segment, by ternary search: the distance is convex along it.
-long double distance(Vec3d a, Vec3d b, const Aabb& box) {
+long double exact_distance(Vec3d a, Vec3d b, const Aabb& box) {
     double lo = 0, hi = 1;
-    const auto at = [&](double t) { return distance(a + (b - a) * t, box); };
+    const auto at = [&](double t) { return exact_distance(a + (b - a) * t, box); };
     for (int i = 0; i < 100; ++i) {
         const double third = (hi - lo) / 3;
         (at(lo + third) < at(hi - third) ? hi : lo) = at(lo + third) < at(hi - third) ? hi - third : lo + third;
@@ -51,7 +51,7 @@ TEST_P(EveryOverlap, FindsTheBoxesThatContainAPoint) {
         const Vec3d point = to_double(*any_point());
         std::vector<Proxy> found;
         containing(filled(GetParam(), boxes), point, found);
-        RC_ASSERT(found == proxies_where(boxes, [&](const Aabb& box) { return distance(point, box) == 0; }));
+        RC_ASSERT(found == proxies_where(boxes, [&](const Aabb& box) { return exact_distance(point, box) == 0; }));
     }));
 }
 
@@ -61,7 +61,8 @@ TEST_P(EveryOverlap, FindsTheBoxesThatASphereTouches) {
         const Vec3d centre = to_double(*any_point());
         const float radius = std::abs(*quarters(3));
         // On a grid of 0.25 m squared distances are exact, so a sphere that only touches must count.
-        const auto expected = proxies_where(boxes, [&](const Aabb& box) { return distance(centre, box) <= radius; });
+        const auto expected =
+            proxies_where(boxes, [&](const Aabb& box) { return exact_distance(centre, box) <= radius; });
         const AnyStructure structure = filled(GetParam(), boxes);
         const SphereRegion region(centre, radius);
         RC_ASSERT(found_by(structure, region) == expected);
@@ -76,9 +77,9 @@ TEST_P(EveryOverlap, FindsTheBoxesThatACapsuleTouches) {
         const float radius = std::abs(*quarters(3));
         const auto found = found_by(filled(GetParam(), boxes), CapsuleRegion(a, b, radius));
         const auto certain =
-            proxies_where(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius - 1e-7L; });
+            proxies_where(boxes, [&](const Aabb& box) { return exact_distance(a, b, box) <= radius - 1e-7L; });
         const auto possible =
-            proxies_where(boxes, [&](const Aabb& box) { return distance(a, b, box) <= radius + 1e-7L; });
+            proxies_where(boxes, [&](const Aabb& box) { return exact_distance(a, b, box) <= radius + 1e-7L; });
         RC_ASSERT(std::includes(found.begin(), found.end(), certain.begin(), certain.end()));
         RC_ASSERT(std::includes(possible.begin(), possible.end(), found.begin(), found.end()));
     }));

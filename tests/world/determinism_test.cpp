@@ -1,5 +1,6 @@
 // Determinism: the same calls give the same bits for any number of threads, structure and SIMD width, and after a
 // snapshot.
+#include "fase/broad/registry.hpp"
 #include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 

@@ -7,10 +7,10 @@
 namespace fase::broad {
 namespace {
 
-constexpr std::size_t few = 32, bin_count = 32;  // up to `few` items, every split between sorted centres is tried
+constexpr std::size_t few = 32, bins_per_axis = 32;  // up to `few` items, every split between sorted centres is tried
 
 /// The items on one side of a split, or in one bin.
-struct Side {
+struct SideSum {
     Aabb box;
     std::size_t count = 0;
     void add(const Aabb& added, std::size_t added_count) {
@@ -27,12 +27,10 @@ struct Best {
     Split split;
 };
 
-constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
-
 /// Tries the splits between consecutive sides of a row.
-void try_cuts(std::span<const Side> row, int axis, Best& best) {
-    std::array<Side, std::max(few, bin_count)> right;  // right[i]: sum of row[i] and later
-    Side sum;
+void try_cuts(std::span<const SideSum> row, int axis, Best& best) {
+    std::array<SideSum, std::max(few, bins_per_axis)> right;  // right[i]: sum of row[i] and later
+    SideSum sum;
     for (std::size_t i = row.size(); i-- > 0;) {
         sum.add(row[i].box, row[i].count);
         right[i] = sum;
@@ -48,7 +46,7 @@ void try_cuts(std::span<const Side> row, int axis, Best& best) {
 
 Split split_few(std::span<BuildItem> items) {
     std::array<std::uint8_t, few> order, best_order;
-    std::array<Side, few> row;
+    std::array<SideSum, few> row;
     Best best;
     for (int axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 0; i < items.size(); ++i) {
@@ -79,14 +77,14 @@ Split split_by_area(std::span<BuildItem> items) {
     const Vec3 e = extent(centres);
     Vec3 bins_per_metre;
     for (int axis = 0; axis < 3; ++axis) {
-        const float scale = static_cast<float>(bin_count) / e[axis];
+        const float scale = static_cast<float>(bins_per_axis) / e[axis];
         bins_per_metre[axis] = scale < Aabb::infinity ? scale : 0;
     }
     const auto bin_of = [&](const Aabb& box, int axis) {
         const float at = (doubled_centre(box, axis) - centres.lo[axis]) * bins_per_metre[axis];
-        return std::min(static_cast<std::size_t>(at), bin_count - 1);
+        return std::min(static_cast<std::size_t>(at), bins_per_axis - 1);
     };
-    std::array<std::array<Side, bin_count>, 3> bins;
+    std::array<std::array<SideSum, bins_per_axis>, 3> bins;
     for (const BuildItem& item : items) {
         for (int axis = 0; axis < 3; ++axis)
             bins[static_cast<std::size_t>(axis)][bin_of(item.box, axis)].add(item.box, 1);

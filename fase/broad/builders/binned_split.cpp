@@ -14,8 +14,6 @@ struct Bin {
     std::size_t count = 0;
 };
 
-constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
-
 /// Maps the centre of a box to a bin on one axis.
 struct Binning {
     int axis = 0;

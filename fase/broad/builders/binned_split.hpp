@@ -14,6 +14,9 @@ struct BuildItem {
     Proxy proxy = 0;
 };
 
+/// Twice the centre of a box along an axis.
+constexpr float doubled_centre(const Aabb& box, int axis) { return box.lo[axis] + box.hi[axis]; }
+
 /// The first `left_count` items are the left side. Both sides have at least one item; `left` and `right` are their
 /// bounds.
 struct Split {

@@ -1,15 +1,11 @@
 /// Integrates velocities and poses, one body at a time.
 #include "fase/dynamics/solver/integrate.hpp"
 
+#include "fase/dynamics/solver/rows.hpp"
+
 namespace fase::dynamics {
 namespace {
 
-Vec3 read(const float* p) { return {p[0], p[1], p[2]}; }
-void write(float* p, Vec3 v) {
-    p[0] = v.x;
-    p[1] = v.y;
-    p[2] = v.z;
-}
 Vec3 without_locked(Vec3 v, unsigned locks) { return {locks & 1 ? 0 : v.x, locks & 2 ? 0 : v.y, locks & 4 ? 0 : v.z}; }
 /// Returns v, scaled to length `max` when it is longer. A NaN or infinite v is returned unchanged; finish() handles it.
 Vec3 clamp_length(Vec3 v, float max, bool& clamped) {

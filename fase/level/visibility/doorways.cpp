@@ -14,8 +14,6 @@ constexpr double slack = 0x1p-16;
 /// Lines through two nearer points are not used as bounds: rounding could rotate them by more than the slack.
 constexpr double min_length = 0x1p-4;
 
-Point between(Point a, Point b, double share) { return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share}; }
-
 double length_l1(Point a, Point b) { return std::abs(b.x - a.x) + std::abs(b.y - a.y); }
 
 /// An interval of a doorway, as points.

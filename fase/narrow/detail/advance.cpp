@@ -6,11 +6,10 @@
 
 #include "fase/geometry/bounds.hpp"
 #include "fase/narrow/detail/gjk.hpp"
+#include "fase/narrow/detail/infinity.hpp"
 
 namespace fase::narrow {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Returns the gap between two shapes that are expected to be apart; 0 or less and no normal when they overlap.
 Distance gap_between(const Shape& target, const Shape& mover, const TransformD& mover_in_target) {

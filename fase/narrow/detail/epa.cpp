@@ -4,10 +4,11 @@
 #include <array>
 #include <limits>
 
+#include "fase/narrow/detail/infinity.hpp"
+
 namespace fase::narrow {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t corner_capacity = 96;
 constexpr std::size_t face_capacity = 2 * corner_capacity;
 using Index = std::uint8_t;

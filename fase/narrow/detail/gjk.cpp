@@ -111,7 +111,7 @@ private:
             if (weight[0] > 0 && weight[1] > 0 && weight[2] > 0 && weight[3] > 0) {
                 Closest inside;
                 const double sum = weight[0] + weight[1] + weight[2] + weight[3];
-                for (double& w : weight) w /= sum;
+                for (double& share : weight) share /= sum;
                 inside.weight = weight;
                 inside.squared = 0;
                 return inside;

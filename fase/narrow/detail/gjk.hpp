@@ -5,6 +5,7 @@
 
 #include "fase/math/transform_d.hpp"
 #include "fase/narrow/detail/core_view.hpp"
+#include "fase/narrow/detail/infinity.hpp"
 
 namespace fase::narrow {
 
@@ -23,7 +24,7 @@ struct Simplex {
 /// Termination criteria of gjk().
 struct GjkOptions {
     /// Stops when the cores are proven to be farther apart than this (metres).
-    double farther_than = std::numeric_limits<double>::infinity();
+    double farther_than = infinity;
     /// Stops at this relative error of the squared distance.
     double tolerance = 1e-15;
 };

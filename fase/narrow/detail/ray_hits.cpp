@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "fase/narrow/detail/infinity.hpp"
+
 namespace fase::narrow {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The interval of the line inside a solid; the default is the entire line. Empty: out < in.
 struct Span {

@@ -4,10 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "fase/narrow/detail/infinity.hpp"
+
 namespace fase::narrow {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// An edge with its vector for the Gauss map test.
 struct MappedEdge {

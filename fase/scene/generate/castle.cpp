@@ -12,7 +12,7 @@ namespace {
 // The plan, in metres: four towers on a square, walls of two layers between them, a gate in the wall at +z.
 constexpr int wall_blocks = 17, outer_courses = 10, inner_courses = 8, tower_courses = 17;
 constexpr float tower_radius = 2.4f, outer_depth = 0.5f, inner_depth = 1;
-constexpr double corner = 0.5 * wall_blocks * Masonry::length + tower_radius + 0.001;
+constexpr double corner_distance = 0.5 * wall_blocks * Masonry::length + tower_radius + 0.001;
 constexpr int gate_blocks = 5, pier_courses = 3, arch_courses = 4;
 constexpr double bodies_per_castle = 3000;
 
@@ -71,7 +71,7 @@ void build_walls(Masonry& masonry, Vec3d centre) {
         // Counter-clockwise seen from below, so that left is outward.
         const Vec3 along = directions[i], outward{along.z, 0, -along.x};
         const double half = 0.5 * wall_blocks * Masonry::length;
-        const WallLine line{centre + to_double(outward) * corner - to_double(along) * half, along};
+        const WallLine line{centre + to_double(outward) * corner_distance - to_double(along) * half, along};
         if (outward.z > 0.5f) {
             build_gate(masonry, layers, line);
         } else {
@@ -159,7 +159,7 @@ struct Shot {
 };
 
 void fire_volley(Masonry& masonry, Vec3d centre, Vec3 gravity) {
-    constexpr float c = static_cast<float>(corner);
+    constexpr float c = static_cast<float>(corner_distance);
     constexpr Shot shots[]{
         {2.0, {5, 3.2f, c}, 0.1, 0.8f}, {2.8, {-c, 5, c}, -0.4, 0.9f},  {3.3, {-5.5f, 3, c}, -0.2, 0.8f},
         {3.8, {c, 6, c}, 0.5, 0.9f},    {4.3, {0, 4.2f, c}, 0.05, 1},   {4.8, {c, 3, 2}, 1.2, 0.8f},
@@ -200,7 +200,8 @@ Scene make_castle(const GenerateOptions& options) {
         const Vec3d centre{(i % columns - 0.5 * (columns - 1)) * 70.0, 0, (i / columns) * -70.0};
         for (const double x : {-1, 1}) {
             for (const double z : {-1, 1})
-                build_tower(masonry, centre + Vec3d{x * corner, 0, z * corner}, tower_radius, tower_courses, z < 0);
+                build_tower(masonry, centre + Vec3d{x * corner_distance, 0, z * corner_distance}, tower_radius,
+                            tower_courses, z < 0);
         }
         build_walls(masonry, centre);
         build_keep(masonry, centre + Vec3d{0, 0, -1.5}, 7, 21);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,7 +43,7 @@ public:
             all_finite_ = all_finite_ && std::isfinite(value);
             if (!std::isfinite(value)) value = 0;
         }
-        fmt::format_to(std::back_inserter(text_), "{}", value);
+        text_ += fmt::format("{}", value);
         return *this;
     }
     template <class T> JsonText& numbers(std::span<const T> values) {
