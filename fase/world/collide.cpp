@@ -17,9 +17,12 @@ struct Displacement {
     Quat rotation;
 
     Displacement(const BodyMotion& now, Vec3d position, Quat rotation_then)
-        : moved(to_float(now.position - position)), rotation(normalized(now.rotation * conjugate(rotation_then))) {}
-    /// Returns the displacement of the point that was at `offset` from the centre of mass.
-    [[nodiscard]] Vec3 of(Vec3 offset) const { return moved + (rotate(rotation, offset) - offset); }
+        : moved(to_float(now.position - position)), rotation(now.rotation * conjugate(rotation_then)) {}
+    /// Returns R v - v for the rotation R.
+    [[nodiscard]] Vec3 of(Vec3 v) const {
+        const Vec3 q = rotation.vector();
+        return cross(q, cross(q, v) + v * rotation.w) * 2.0f;
+    }
     /// Returns the square of the sine of half the angle by which the axis tilted.
     [[nodiscard]] float tilt(Vec3 axis) const {
         const Vec3 v = rotation.vector();
@@ -41,19 +44,27 @@ bool reuse_manifold(Contact& c, const BodyMotion& a, const BodyMotion& b, float 
     const Displacement moved_a(a, c.position_a, c.rotation_a), moved_b(b, c.position_b, c.rotation_b);
     const Vec3 n = c.first_normal;
     if (!(moved_a.tilt(n) < max_tilt && moved_b.tilt(n) < max_tilt)) return false;
+    // The relative displacement is affine in the tangent coordinates of the points.
     const Vec3 second = cross(n, c.first_tangent);
+    const Vec3 centre = (moved_b.moved + moved_b.of(c.first_offset_b)) - (moved_a.moved + moved_a.of(c.first_offset_a));
+    const Vec3 slope_x = moved_b.of(c.first_tangent) - moved_a.of(c.first_tangent);
+    const Vec3 slope_y = moved_b.of(second) - moved_a.of(second);
     float separation[4] = {};
     for (int i = 0; i < c.count; ++i) {
-        const Vec3 from_centre = c.first_tangent * c.x[i] + second * c.y[i];
-        const Vec3 moved = moved_b.of(c.first_offset_b + from_centre) - moved_a.of(c.first_offset_a + from_centre);
+        const Vec3 moved = centre + slope_x * c.x[i] + slope_y * c.y[i];
         if (!(length_squared(moved) < distance * distance)) return false;
         separation[i] = c.first_separation[i] + dot(moved, n);
     }
-    const Quat twist = moved_a.twist(n);
     c.normal = n;
-    c.tangent = rotate(twist, c.first_tangent);
-    c.offset_a = rotate(twist, c.first_offset_a);
-    c.offset_b = rotate(twist, c.first_offset_b);
+    c.tangent = c.first_tangent;
+    c.offset_a = c.first_offset_a;
+    c.offset_b = c.first_offset_b;
+    if (const float turn = dot(n, moved_a.rotation.vector()); turn * turn > 1e-12f) {
+        const Quat twist = moved_a.twist(n);
+        c.tangent = rotate(twist, c.tangent);
+        c.offset_a = rotate(twist, c.offset_a);
+        c.offset_b = rotate(twist, c.offset_b);
+    }
     c.nearest = separation[0];
     for (int i = 0; i < c.count; ++i) {
         c.separation[i] = separation[i];

@@ -28,7 +28,7 @@ struct StepReport {
     std::uint32_t manifolds_reused = 0;  ///< manifolds reused from an earlier step
     std::uint32_t contact_points = 0;
     std::uint32_t colours = 0;        ///< graph colours, which the solver processes sequentially
-    std::uint32_t overflow = 0;       ///< contacts that fit no colour, solved one by one
+    std::uint32_t overflow = 0;       ///< contacts of bodies with more contacts than colours, solved in order
     std::uint32_t islands = 0;        ///< awake islands
     std::uint64_t bytes = 0;          ///< memory that the world has allocated
     std::uint32_t speed_clamped = 0;  ///< bodies whose speed was clamped

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
 #include "fase/core/random.hpp"
 #include "fase/dynamics/solver/colouring.hpp"
 #include "fase/dynamics/solver/contact_passes.hpp"
+#include "fase/dynamics/solver/hub_blocks.hpp"
 #include "fase/dynamics/solver/integrate.hpp"
 #include "fase/dynamics/solver/islands.hpp"
 
@@ -19,7 +21,7 @@ struct Case {
     std::vector<SolverBody> bodies;
     std::vector<SolverMass> masses;
     std::vector<ContactBlock> blocks;
-    explicit Case(std::uint64_t seed, int block_count, bool one_sided) {
+    explicit Case(std::uint64_t seed, int block_count, Sides sides) {
         Random random(seed);
         const auto count = static_cast<std::size_t>(block_count) * block_lanes;
         bodies.resize(2 * count + 2);
@@ -43,7 +45,10 @@ struct Case {
             for (int lane = 0; lane < block_lanes; ++lane) {
                 const auto at = static_cast<std::uint32_t>(b * block_lanes + static_cast<std::size_t>(lane));
                 const bool unused = b + 1 == blocks.size() && lane > 4;
-                k.a[lane] = unused ? static_cast<std::uint32_t>(bodies.size() - 1) : one_sided ? 0 : 2 * at + 1;
+                k.a[lane] = unused                  ? static_cast<std::uint32_t>(bodies.size() - 1)
+                            : sides == Sides::OnlyB ? 0
+                            : sides == Sides::Hub   ? 1 + 2 * (at % 3)
+                                                    : 2 * at + 1;
                 k.b[lane] = unused ? static_cast<std::uint32_t>(bodies.size() - 1) : 2 * at + 2;
                 if (unused) continue;
                 const Vec3 n = normalized(Vec3{random.between(-1, 1), random.between(-1, 1), 1.1f});
@@ -68,22 +73,25 @@ struct Case {
                 }
                 k.friction[lane] = random.between(0, 1);
             }
+            for (int lane = 0; lane < block_lanes; ++lane)
+                for (int i = 0; i < block_lanes; ++i)
+                    k.split[lane] += k.a[i] == k.a[lane] && k.a[lane] + 1 < bodies.size() ? 1.0f : 0.0f;
         }
     }
 };
 
 TEST(ContactPasses, wide_lanes_give_the_bits_of_the_scalar_reference) {
-    for (const bool one_sided : {false, true})
+    for (const Sides sides : {Sides::Both, Sides::OnlyB, Sides::Hub})
         for (std::uint64_t seed = 0; seed < 50; ++seed) {
-            Case wide(seed, 3, one_sided), reference(seed, 3, one_sided);
+            Case wide(seed, 3, sides), reference(seed, 3, sides);
             for (const Pass pass : {Pass::Prepare, Pass::FindImpacts, Pass::WarmStart, Pass::Biased, Pass::Relax,
                                     Pass::Biased, Pass::Relax}) {
                 const auto input = [&](Case& c) {
                     return PassInput{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240),
                                      3};
                 };
-                run_pass(pass, wide.blocks.data(), wide.blocks.size(), one_sided, input(wide));
-                run_pass_reference(pass, reference.blocks.data(), reference.blocks.size(), one_sided, input(reference));
+                run_pass(pass, wide.blocks.data(), wide.blocks.size(), sides, input(wide));
+                run_pass_reference(pass, reference.blocks.data(), reference.blocks.size(), sides, input(reference));
                 ASSERT_EQ(
                     std::memcmp(wide.blocks.data(), reference.blocks.data(), wide.blocks.size() * sizeof(ContactBlock)),
                     0);
@@ -96,10 +104,10 @@ TEST(ContactPasses, wide_lanes_give_the_bits_of_the_scalar_reference) {
 }
 
 TEST(ContactPasses, impulses_push_and_stay_inside_the_cone) {
-    Case c(7, 10, false);
+    Case c(7, 10, Sides::Both);
     const PassInput input{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
     for (const Pass pass : {Pass::Prepare, Pass::Biased, Pass::Relax})
-        run_pass(pass, c.blocks.data(), c.blocks.size(), false, input);
+        run_pass(pass, c.blocks.data(), c.blocks.size(), Sides::Both, input);
     for (const ContactBlock& k : c.blocks)
         for (int lane = 0; lane < block_lanes; ++lane) {
             float total = 0;
@@ -113,20 +121,50 @@ TEST(ContactPasses, impulses_push_and_stay_inside_the_cone) {
 }
 
 TEST(ContactPasses, impulses_conserve_momentum) {
-    Case c(11, 4, false);
-    const auto momentum = [&] {
-        Vec3d sum;
-        for (std::size_t i = 1; i + 1 < c.bodies.size(); ++i)
-            sum += Vec3d{c.bodies[i].velocity[0], c.bodies[i].velocity[1], c.bodies[i].velocity[2]} *
-                   (1.0 / double(c.bodies[i].inverse_mass_z));
-        return sum;
-    };
-    const PassInput input{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
-    run_pass(Pass::Prepare, c.blocks.data(), c.blocks.size(), false, input);
-    const Vec3d before = momentum();
-    run_pass(Pass::Biased, c.blocks.data(), c.blocks.size(), false, input);
-    run_pass(Pass::Relax, c.blocks.data(), c.blocks.size(), false, input);
-    EXPECT_LT(length(momentum() - before), 1e-3);
+    for (const Sides sides : {Sides::Both, Sides::Hub}) {
+        Case c(11, 4, sides);
+        const auto momentum = [&] {
+            Vec3d sum;
+            for (std::size_t i = 1; i + 1 < c.bodies.size(); ++i)
+                sum += Vec3d{c.bodies[i].velocity[0], c.bodies[i].velocity[1], c.bodies[i].velocity[2]} *
+                       (1.0 / double(c.bodies[i].inverse_mass_z));
+            return sum;
+        };
+        const PassInput input{c.bodies.data(), c.masses.data(), 1.0f / 240, make_softness(45, 10, 1.0f / 240), 3};
+        run_pass(Pass::Prepare, c.blocks.data(), c.blocks.size(), sides, input);
+        const Vec3d before = momentum();
+        run_pass(Pass::Biased, c.blocks.data(), c.blocks.size(), sides, input);
+        run_pass(Pass::Relax, c.blocks.data(), c.blocks.size(), sides, input);
+        EXPECT_LT(length(momentum() - before), 1e-3);
+    }
+}
+
+TEST(HubBlocks, a_dynamic_b_occurs_once_in_a_block_and_every_contact_has_a_lane) {
+    Random random(5);
+    HubBlocks blocks;
+    std::vector<std::array<std::uint32_t, 2>> rows;
+    std::vector<std::uint32_t> places;
+    for (int i = 0; i < 5000; ++i) {
+        const auto a = static_cast<std::uint32_t>(random.below(3)), b = static_cast<std::uint32_t>(random.below(60));
+        if (a == b) continue;
+        rows.push_back({a, b});
+        places.push_back(blocks.place(a, b, true));
+    }
+    std::vector<std::vector<std::size_t>> in_block(blocks.size());
+    std::vector<bool> taken(8 * blocks.size(), false);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_FALSE(taken[places[i]]);
+        taken[places[i]] = true;
+        in_block[places[i] / 8].push_back(i);
+    }
+    for (const auto& contacts : in_block)
+        for (const std::size_t i : contacts)
+            for (const std::size_t j : contacts)
+                if (i != j) {
+                    EXPECT_NE(rows[i][1], rows[j][1]);
+                    EXPECT_NE(rows[i][1], rows[j][0]);
+                }
+    EXPECT_LT(blocks.size(), places.size() / 7);  // nearly full
 }
 
 TEST(ContactPasses, a_known_load_never_pushes_more_than_a_hard_contact) {
@@ -157,8 +195,8 @@ TEST(ContactPasses, a_known_load_never_pushes_more_than_a_hard_contact) {
                 input.softness.mass_scale = 1;
                 input.softness.impulse_scale = 0;
             }
-            run_pass(Pass::Prepare, &k, 1, true, input);
-            run_pass(Pass::Biased, &k, 1, true, input);
+            run_pass(Pass::Prepare, &k, 1, Sides::OnlyB, input);
+            run_pass(Pass::Biased, &k, 1, Sides::OnlyB, input);
             return k.impulse[0][0];
         };
         EXPECT_LE(solve(false), solve(true) + 1e-4f);

@@ -23,6 +23,8 @@ public:
     }
     /// Returns the colour of a contact between dynamic body b and a static or kinematic body, or `none`.
     [[nodiscard]] int colour_one_sided(std::uint32_t b) { return assign(b, b, ~used_[b] & ~((1ull << two_sided) - 1)); }
+    /// Returns the number of colours that a body uses.
+    [[nodiscard]] int used(std::uint32_t row) const { return std::popcount(used_[row]); }
 
 private:
     int assign(std::uint32_t a, std::uint32_t b, std::uint64_t free) {

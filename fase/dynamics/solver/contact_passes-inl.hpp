@@ -55,17 +55,27 @@ template <class V> struct Inertia {
     Vec<V> mass_a, mass_b;
 
     /// `z_a` and `z_b` are the inverse masses along z, which the rows of the velocities contain.
-    FASE_INLINE void gather(const SolverMass* masses, const std::uint32_t* rows_a, const std::uint32_t* rows_b, V z_a,
-                            V z_b) {
+    template <Sides sides>
+    FASE_INLINE void gather(const SolverMass* masses, const ContactBlock& k, int s, V z_a, V z_b) {
         const float* base = reinterpret_cast<const float*>(masses);
         V row[8];
-        V::gather8(base, rows_a, 8, row);
+        V::gather8(base, k.a + s, 8, row);
+        if constexpr (sides == Sides::Hub) {
+            const V split = V::load(k.split + s);
+            for (V& value : row) value = value * split;
+            z_a = z_a * split;
+        }
         a = {row[0], row[1], row[2], row[3], row[4], row[5]};
         mass_a = {row[6], row[7], z_a};
-        V::gather8(base, rows_b, 8, row);
+        V::gather8(base, k.b + s, 8, row);
         b = {row[0], row[1], row[2], row[3], row[4], row[5]};
         mass_b = {row[6], row[7], z_b};
     }
+};
+
+/// The velocities that each lane of a block gives its body a.
+struct alignas(64) HubVelocities {
+    float row[6][8];
 };
 
 /// Velocities of the two bodies of each lane.
@@ -87,21 +97,25 @@ template <class V> struct Velocities {
         wb = {row[4], row[5], row[6]};
         rest_b = row[7];
     }
-    template <bool one_sided>
-    FASE_INLINE void scatter(SolverBody* bodies, const std::uint32_t* a, const std::uint32_t* b) const {
+    /// Writes the velocities back; those of shared bodies go to `hub` (see merge_hub()).
+    template <Sides sides>
+    FASE_INLINE void scatter(SolverBody* bodies, const ContactBlock& k, int s, HubVelocities& hub) const {
         float* base = reinterpret_cast<float*>(bodies);
-        if constexpr (!one_sided) {
+        if constexpr (sides == Sides::Both) {
             const V row[8] = {va.x, va.y, va.z, mass_a, wa.x, wa.y, wa.z, rest_a};
-            V::scatter8(base, a, 16, row);
+            V::scatter8(base, k.a + s, 16, row);
+        }
+        if constexpr (sides == Sides::Hub) {
+            const V row[6] = {va.x, va.y, va.z, wa.x, wa.y, wa.z};
+            for (int i = 0; i < 6; ++i) row[i].store(hub.row[i] + s);
         }
         const V row[8] = {vb.x, vb.y, vb.z, mass_b, wb.x, wb.y, wb.z, rest_b};
-        V::scatter8(base, b, 16, row);
+        V::scatter8(base, k.b + s, 16, row);
     }
     /// Applies the impulse `p` at the centre of the manifold and the angular impulse `turn` to b, and the opposite to
     /// a.
-    template <bool one_sided>
-    FASE_INLINE void apply(Vec<V> p, Vec<V> turn, const Frame<V>& f, const Inertia<V>& inertia) {
-        if constexpr (!one_sided) {
+    template <Sides sides> FASE_INLINE void apply(Vec<V> p, Vec<V> turn, const Frame<V>& f, const Inertia<V>& inertia) {
+        if constexpr (sides != Sides::OnlyB) {
             va = va - scaled(inertia.mass_a, p);
             wa = wa - inertia.a * (cross(f.ca, p) + turn);
         }
@@ -214,11 +228,11 @@ FASE_INLINE void prepare_friction(ContactBlock& k, int s, const Frame<V>& f, con
 }
 
 /// Computes all values of the block that depend on the manifold and on the bodies at the beginning of the step.
-template <class V> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V, Sides sides> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
     Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
+    inertia.template gather<sides>(in.masses, k, s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
     const Symmetric<V>&ia = inertia.a, &ib = inertia.b;
     const Symmetric<V> sum{ia.xx + ib.xx, ia.xy + ib.xy, ia.xz + ib.xz, ia.yy + ib.yy, ia.yz + ib.yz, ia.zz + ib.zz};
@@ -249,11 +263,11 @@ template <class V> void find_impact_lanes(ContactBlock& k, int s, const PassInpu
 }
 
 /// Applies the impulses of the last step.
-template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V, Sides sides> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in, HubVelocities& hub) {
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
     Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
+    inertia.template gather<sides>(in.masses, k, s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
     V sum = V::set(0.0f), sx = sum, sy = sum;
     for (int i = 0; i < 4; ++i) {
@@ -264,8 +278,8 @@ template <class V, bool one_sided> void warm_start_lanes(ContactBlock& k, int s,
     }
     const Vec<V> p = f.n * sum + f.t1 * V::load(k.friction_impulse[0] + s) + f.t2 * V::load(k.friction_impulse[1] + s);
     const Vec<V> turn = f.t1 * sy - f.t2 * sx + f.n * V::load(k.twist_impulse + s);
-    u.template apply<one_sided>(p, turn, f, inertia);
-    u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
+    u.template apply<sides>(p, turn, f, inertia);
+    u.template scatter<sides>(in.bodies, k, s, hub);
 }
 
 /// The points of each lane's manifold in one pass. An impulse is corrected by -mass (scale v + bias) - decay impulse,
@@ -388,7 +402,7 @@ constexpr float friction_gain = 0.7f;
 
 /// Solves friction at the centre of the manifold: first the twist about the normal, then both tangents together inside
 /// the friction cone.
-template <class V, bool one_sided>
+template <class V, Sides sides>
 FASE_INLINE void solve_friction(ContactBlock& k, int s, const Frame<V>& f, const Inertia<V>& inertia,
                                 const NormalLoad<V>& load, Velocities<V>& u) {
     const V zero = V::set(0.0f), one = V::set(1.0f), mu = V::load(k.friction + s), gain = V::set(friction_gain);
@@ -409,15 +423,16 @@ FASE_INLINE void solve_friction(ContactBlock& k, int s, const Frame<V>& f, const
     new2 = new2 * shrink;
     new1.store(k.friction_impulse[0] + s);
     new2.store(k.friction_impulse[1] + s);
-    u.template apply<one_sided>(f.t1 * (new1 - old1) + f.t2 * (new2 - old2), f.n * d, f, inertia);
+    u.template apply<sides>(f.t1 * (new1 - old1) + f.t2 * (new2 - old2), f.n * d, f, inertia);
 }
 
 /// One Gauss-Seidel pass. `biased`: soft, with push-out of overlap; otherwise the relax pass: hard, without push-out.
-template <class V, bool one_sided, bool biased> void solve_lanes(ContactBlock& k, int s, const PassInput& in) {
+template <class V, Sides sides, bool biased>
+void solve_lanes(ContactBlock& k, int s, const PassInput& in, HubVelocities& hub) {
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
     Inertia<V> inertia;
-    inertia.gather(in.masses, k.a + s, k.b + s, u.mass_a, u.mass_b);
+    inertia.template gather<sides>(in.masses, k, s, u.mass_a, u.mass_b);
     const Frame<V> f = Frame<V>::load(k, s);
 
     NormalSolver<V, biased> normal;
@@ -426,34 +441,52 @@ template <class V, bool one_sided, bool biased> void solve_lanes(ContactBlock& k
     normal.coupling = Coupling<V>::load(k, s);
     normal.solve();
     const NormalLoad<V> load = store_impulses<V, biased>(k, s, normal.points);
-    u.template apply<one_sided>(f.n * normal.sum, f.t1 * normal.sum_y - f.t2 * normal.sum_x, f, inertia);
+    u.template apply<sides>(f.n * normal.sum, f.t1 * normal.sum_y - f.t2 * normal.sum_x, f, inertia);
 
-    solve_friction<V, one_sided>(k, s, f, inertia, load, u);
-    u.template scatter<one_sided>(in.bodies, k.a + s, k.b + s);
+    solve_friction<V, sides>(k, s, f, inertia, load, u);
+    u.template scatter<sides>(in.bodies, k, s, hub);
 }
 
-template <class V> void prepare_blocks(ContactBlock* blocks, std::size_t count, const PassInput& in) {
-    for (std::size_t i = 0; i < count; ++i)
-        for (int s = 0; s < block_lanes; s += V::lanes) prepare_lanes<V>(blocks[i], s, in);
+/// Gives the bodies a of a hub's block the mean of the velocities of their lanes. The block has read them before any
+/// lane wrote, so the order of the lanes does not depend on the SIMD width.
+inline void merge_hub(const ContactBlock& k, const HubVelocities& hub, SolverBody* bodies) {
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        bool first = true;
+        for (int other = 0; other < lane; ++other) first &= k.a[other] != k.a[lane];
+        if (!first) continue;
+        float sum[6] = {};
+        for (int other = lane; other < block_lanes; ++other)
+            if (k.a[other] == k.a[lane])
+                for (int i = 0; i < 6; ++i) sum[i] += hub.row[i][other];
+        if (!(k.split[lane] > 0)) continue;
+        SolverBody& body = bodies[k.a[lane]];
+        for (int i = 0; i < 3; ++i) {
+            body.velocity[i] = sum[i] / k.split[lane];
+            body.spin[i] = sum[3 + i] / k.split[lane];
+        }
+    }
 }
-template <class V, bool one_sided>
-void run_one(Pass pass, ContactBlock* blocks, std::size_t count, const PassInput& in) {
-    for (std::size_t i = 0; i < count; ++i)
+
+template <class V, Sides sides>
+void run_sides(Pass pass, ContactBlock* blocks, std::size_t count, const PassInput& in) {
+    HubVelocities hub;
+    for (std::size_t i = 0; i < count; ++i) {
+        ContactBlock& k = blocks[i];
         for (int s = 0; s < block_lanes; s += V::lanes) switch (pass) {
-                case Pass::WarmStart: warm_start_lanes<V, one_sided>(blocks[i], s, in); break;
-                case Pass::FindImpacts: find_impact_lanes<V>(blocks[i], s, in); break;
-                case Pass::Biased: solve_lanes<V, one_sided, true>(blocks[i], s, in); break;
-                case Pass::Relax: solve_lanes<V, one_sided, false>(blocks[i], s, in); break;
-                case Pass::Prepare: break;
+                case Pass::Prepare: prepare_lanes<V, sides>(k, s, in); break;
+                case Pass::FindImpacts: find_impact_lanes<V>(k, s, in); break;
+                case Pass::WarmStart: warm_start_lanes<V, sides>(k, s, in, hub); break;
+                case Pass::Biased: solve_lanes<V, sides, true>(k, s, in, hub); break;
+                case Pass::Relax: solve_lanes<V, sides, false>(k, s, in, hub); break;
             }
+        if (sides == Sides::Hub && pass != Pass::Prepare && pass != Pass::FindImpacts) merge_hub(k, hub, in.bodies);
+    }
 }
 template <class V>
-void run_blocks(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& in) {
-    if (pass == Pass::Prepare) {
-        prepare_blocks<V>(blocks, count, in);
-    } else if (one_sided) {
-        run_one<V, true>(pass, blocks, count, in);
-    } else {
-        run_one<V, false>(pass, blocks, count, in);
+void run_blocks(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& in) {
+    switch (sides) {
+        case Sides::Both: run_sides<V, Sides::Both>(pass, blocks, count, in); break;
+        case Sides::OnlyB: run_sides<V, Sides::OnlyB>(pass, blocks, count, in); break;
+        case Sides::Hub: run_sides<V, Sides::Hub>(pass, blocks, count, in); break;
     }
 }

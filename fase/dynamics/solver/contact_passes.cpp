@@ -16,8 +16,8 @@ namespace fase::dynamics::HWY_NAMESPACE {
 using fase::HWY_NAMESPACE::Wide;
 #include "fase/dynamics/solver/contact_passes-inl.hpp"
 
-void run_wide(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
-    run_blocks<Wide>(pass, blocks, count, one_sided, input);
+void run_wide(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input) {
+    run_blocks<Wide>(pass, blocks, count, sides, input);
 }
 }  // namespace fase::dynamics::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -29,11 +29,11 @@ namespace reference {
 }  // namespace reference
 
 HWY_EXPORT(run_wide);
-void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
-    HWY_DYNAMIC_DISPATCH(run_wide)(pass, blocks, count, one_sided, input);
+void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input) {
+    HWY_DYNAMIC_DISPATCH(run_wide)(pass, blocks, count, sides, input);
 }
-void run_pass_reference(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input) {
-    reference::run_blocks<Lane>(pass, blocks, count, one_sided, input);
+void run_pass_reference(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input) {
+    reference::run_blocks<Lane>(pass, blocks, count, sides, input);
 }
 }  // namespace fase::dynamics
 #endif

@@ -15,11 +15,14 @@ enum class Pass {
     Relax,        ///< hard contacts without push-out, with friction
 };
 
-/// Runs a pass over `count` blocks that share no dynamic body. Selects the instruction set at run time; all give the
-/// same bits as run_pass_reference(). Thread-safe for different blocks of a colour.
-void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input);
+/// Runs a pass over `count` blocks of a colour in order. Lanes of a Sides::Hub block that share a body solve their
+/// contacts as if each had an equal share of its mass, and the body takes the sum of their impulses. Source: Tonge,
+/// Benevolenski, Voroshilov 2012, Mass splitting for jitter-free parallel rigid body simulation. Selects the
+/// instruction set at run time; all give the same bits as run_pass_reference(). Thread-safe for different blocks of a
+/// colour.
+void run_pass(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input);
 
 /// Runs a pass one lane at a time: the reference for the SIMD versions.
-void run_pass_reference(Pass pass, ContactBlock* blocks, std::size_t count, bool one_sided, const PassInput& input);
+void run_pass_reference(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input);
 
 }  // namespace fase::dynamics

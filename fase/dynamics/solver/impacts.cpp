@@ -57,14 +57,12 @@ bool Impacts::add_points(Hit& hit, const ImpactInput& in) const {
         const float gap = std::max(separation, 0.0f);
         // The speed before the forces of this sub-step; the speed at touch follows from the work along the gap.
         const float before = dot(hit.normal, velocity_at(a, point.a) - velocity_at(b, point.b)) - k.closing[lane];
-        const float squared = before * before + 2 * acceleration * gap;
-        if (!(before > 0 || acceleration > 0) || !(squared > 0)) continue;
-        point.approach = std::sqrt(squared);
+        const float reach = (before + k.closing[lane]) * h;
+        if (!(before > 0) || !(reach + same_moment > gap)) continue;
+        point.approach = std::sqrt(std::max(before * before + 2 * acceleration * gap, 0.0f));
         if (!(point.approach > in.threshold)) continue;
-        const float time = 2 * gap / (before + point.approach);
-        if (!(before + point.approach > 0)) continue;
-        any |= (before + k.closing[lane]) * h > gap;
-        point.time = time;
+        any |= reach > gap;
+        point.time = std::min(2 * gap / (before + point.approach), h);
         // After the bounce the forces act for the rest of the sub-step.
         point.target = k.restitution[lane] * point.approach - acceleration * (h - point.time);
         first = std::min(first, gap);
@@ -105,7 +103,8 @@ void Impacts::gather(std::span<Colour> colours, const ImpactInput& in) {
     touched_.clear();
     for (const Hit& hit : hits_)
         for (const std::uint32_t row : {hit.a, hit.b})
-            if (reacts(in, row)) touched_.push_back({row, read(in.bodies[row].velocity), read(in.bodies[row].spin)});
+            if (reacts(in, row))
+                touched_.push_back({row, read(in.bodies[row].velocity), read(in.bodies[row].spin), {}, {}});
     std::sort(touched_.begin(), touched_.end(), [](const Touched& x, const Touched& y) { return x.row < y.row; });
     touched_.erase(std::unique(touched_.begin(), touched_.end(),
                                [](const Touched& x, const Touched& y) { return x.row == y.row; }),
@@ -194,14 +193,18 @@ void Impacts::iterate(const ImpactInput& in, bool with_friction) {
     }
 }
 
-double Impacts::added_energy(const ImpactInput& in) const {
+std::vector<Impacts::Touched>::iterator Impacts::find_touched(std::uint32_t row) {
+    return std::lower_bound(touched_.begin(), touched_.end(), row,
+                            [](const Touched& t, std::uint32_t r) { return t.row < r; });
+}
+
+double Impacts::added_energy(const ImpactInput& in) {
     // The work of an impulse: impulse times the mean of the velocities before and after. `before` is the start of the
     // round, which `touched_` keeps.
     const auto velocity_before = [&](std::uint32_t row, Vec3 offset) {
-        const auto at = std::lower_bound(touched_.begin(), touched_.end(), row,
-                                         [](const Touched& t, std::uint32_t r) { return t.row < r; });
-        if (at == touched_.end() || at->row != row) return velocity_at(in.bodies[row], offset);
-        return at->velocity + cross(at->spin, offset);
+        if (!reacts(in, row)) return velocity_at(in.bodies[row], offset);
+        const Touched& body = *find_touched(row);
+        return body.velocity + cross(body.spin, offset);
     };
     double energy = 0;
     for (const Hit& hit : hits_) {
@@ -242,8 +245,10 @@ void Impacts::finish(const ImpactInput& in) {
         float time = 0, load = 0;
         const auto delay = [&](std::uint32_t row, Vec3 impulse, Vec3 offset, float seconds) {
             if (!reacts(in, row)) return;
-            in.motions[row].impact_moved -= multiply(inverse_mass(in, row), impulse) * seconds;
-            in.motions[row].impact_rotated -= times(in.masses[row].inertia, cross(offset, impulse)) * seconds;
+            // One sum per body: rotations by the impulses of single points would not commute.
+            Touched& body = *find_touched(row);
+            body.moved -= multiply(inverse_mass(in, row), impulse) * seconds;
+            body.rotated -= times(in.masses[row].inertia, cross(offset, impulse)) * seconds;
         };
         for (int i = 0; i < hit.count; ++i) {
             const Point& p = hit.points[i];
@@ -259,6 +264,19 @@ void Impacts::finish(const ImpactInput& in) {
         delay(hit.a, friction * -1.0f, hit.centre_a, time / load);
         delay(hit.b, friction, hit.centre_b, time / load);
     }
+    for (const Touched& body : touched_) delays_.push_back({body.row, body.moved, body.rotated});
+}
+
+void Impacts::correct_paths(std::span<SolverBody> bodies, std::span<SolverMotion> motions) {
+    for (const Delay& delay : delays_) {
+        SolverBody& body = bodies[delay.row];
+        write(body.moved, read(body.moved) + delay.moved);
+        write(body.rotated, read(body.rotated) + delay.rotated);
+        const Vec3 t = delay.rotated * 0.5f;
+        if (length_squared(t) > 0)
+            motions[delay.row].turned = normalized(Quat{t.x, t.y, t.z, 1} * motions[delay.row].turned);
+    }
+    delays_.clear();
 }
 
 bool Impacts::solve_round(std::span<Colour> colours, const ImpactInput& in) {

@@ -33,6 +33,8 @@ class Impacts {
 public:
     /// Solves the contacts that Pass::FindImpacts has marked, once. Returns whether there were any.
     bool solve_round(std::span<Colour> colours, const ImpactInput& input);
+    /// Corrects the paths for the time before the impacts of this sub-step. Call after the integration of poses.
+    void correct_paths(std::span<SolverBody> bodies, std::span<SolverMotion> motions);
     /// More rounds than this in a sub-step are left to the contacts.
     static constexpr int max_rounds = 16;
 
@@ -61,16 +63,23 @@ private:
     struct Touched {
         std::uint32_t row;
         Vec3 velocity, spin;  // before the round
+        Vec3 moved, rotated;  // correction of the path
+    };
+    struct Delay {
+        std::uint32_t row;
+        Vec3 moved, rotated;
     };
     void gather(std::span<Colour> colours, const ImpactInput& input);
     bool add_points(Hit& hit, const ImpactInput& input) const;
     void iterate(const ImpactInput& input, bool with_friction);
-    [[nodiscard]] double added_energy(const ImpactInput& input) const;
+    std::vector<Touched>::iterator find_touched(std::uint32_t row);
+    [[nodiscard]] double added_energy(const ImpactInput& input);
     void restore_velocities(const ImpactInput& input);
     void finish(const ImpactInput& input);
 
     std::vector<Hit> hits_;
     std::vector<Touched> touched_;
+    std::vector<Delay> delays_;  // of all rounds of the sub-step
 };
 
 }  // namespace fase::dynamics

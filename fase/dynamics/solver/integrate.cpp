@@ -82,8 +82,8 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
         Vec3 spin = read(body.spin);
         const bool free = motion.is_dynamic && velocity == motion.free_velocity;
         const Vec3 mean = free ? (velocity + motion.velocity_before) * 0.5f : velocity;
-        write(body.moved, read(body.moved) + mean * h + motion.impact_moved);
-        write(body.rotated, read(body.rotated) + spin * h + motion.impact_rotated);
+        write(body.moved, read(body.moved) + mean * h);
+        write(body.rotated, read(body.rotated) + spin * h);
         Quat turned = motion.turned;
         const float fast = length_squared(spin) * h * h;
         if (motion.gyroscopic && fast > 1e-8f) {
@@ -104,10 +104,7 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
             const Vec3 t = spin * (h * scale);
             turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
         }
-        if (const Vec3 t = motion.impact_rotated * 0.5f; length_squared(t) > 0)
-            turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
         motion.turned = turned;
-        motion.impact_moved = motion.impact_rotated = {};
     }
 }
 

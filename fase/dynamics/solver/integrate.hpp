@@ -19,8 +19,7 @@ struct alignas(64) SolverMotion {
     Vec3 velocity_before;  ///< at the beginning of the sub-step
     Vec3 free_velocity;    ///< after forces, before contacts; the change by contacts is the difference to it
     Vec3 free_spin;
-    Quat turned;                        ///< rotation since the beginning of the step
-    Vec3 impact_moved, impact_rotated;  ///< corrections of the path in this sub-step by impacts: metres, radians
+    Quat turned;  ///< rotation since the beginning of the step
     std::uint8_t locks = 0;
     bool gyroscopic = false;  ///< unequal moments and no angular lock: the angular velocity changes without torque
     bool is_dynamic = false;  ///< false: kinematic, forces do not act

@@ -153,9 +153,11 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
             if (motions_[row].is_dynamic) support.upper = row;
         }
     });
+    bool any_stack = false;
     for (const Support& support : supports_) {
         carriers_[support.upper].cosines += support.cosine;
         ++carriers_[support.upper].end;
+        any_stack |= support.upper != 0 && motions_[support.lower].is_dynamic;
     }
     std::uint32_t sum = 0;
     for (Carrier& carrier : carriers_) {
@@ -169,7 +171,7 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
     top_down_.clear();
     for (std::uint32_t row = 1; row + 1 < rows_.size(); ++row)
         if (carriers_[row].first != carriers_[row].end) top_down_.push_back({carriers_[row].height, row});
-    std::sort(top_down_.begin(), top_down_.end());
+    if (any_stack) std::sort(top_down_.begin(), top_down_.end());
     for (const auto& [height, row] : top_down_) {
         const Carrier& carrier = carriers_[row];
         for (std::uint32_t k = carrier.first; k < carrier.end; ++k) {
@@ -249,40 +251,57 @@ void Solver::load_contacts(std::span<const Contact> contacts, std::span<const st
         colour.contacts = 0;
         colour.restitution = false;
     }
+    for (HubBlocks& hub : hubs_) hub.clear();
     slots_.resize(active.size());
     for (std::size_t i = 0; i < active.size(); ++i) {
         const Contact& c = contacts[active[i]];
         const std::uint32_t row_a = row_of_body_[c.body_a], row_b = row_of_body_[c.body_b];
         const bool a_is_dynamic = motions_[row_a].is_dynamic, b_is_dynamic = motions_[row_b].is_dynamic;
-        int colour = a_is_dynamic && b_is_dynamic ? colouring_.colour(row_a, row_b)
-                                                  : colouring_.colour_one_sided(b_is_dynamic ? row_b : row_a);
-        if (colour == Colouring::none) colour = a_is_dynamic && b_is_dynamic ? overflow_two_sided : overflow_one_sided;
-        slots_[i] = {active[i], static_cast<std::uint8_t>(colour), !b_is_dynamic, colours_[colour].contacts++};
-        colours_[colour].restitution |= c.restitution > 0;
+        const bool both = a_is_dynamic && b_is_dynamic;
+        const int colour =
+            both ? colouring_.colour(row_a, row_b) : colouring_.colour_one_sided(b_is_dynamic ? row_b : row_a);
+        Slot& slot = slots_[i];
+        if (colour != Colouring::none) {
+            slot = {active[i], static_cast<std::uint8_t>(colour), !b_is_dynamic, colours_[colour].contacts++};
+        } else {
+            // A body with more contacts than colours is a hub: side a of blocks in which it may occur several times.
+            const int hub = both ? overflow_two_sided : overflow_one_sided;
+            const bool flipped = both ? colouring_.used(row_b) > colouring_.used(row_a) : b_is_dynamic;
+            slot = {active[i], static_cast<std::uint8_t>(hub), flipped,
+                    hubs_[both ? 0 : 1].place(flipped ? row_b : row_a, flipped ? row_a : row_b, both)};
+            ++colours_[hub].contacts;
+        }
+        colours_[slot.colour].restitution |= c.restitution > 0;
     }
     counts_ = {};
     const auto unused_row = static_cast<std::uint32_t>(rows_.size() - 1);
-    for (int i = 0; i < Colouring::colours + 2; ++i) {
+    for (int i = 0; i < Colouring::colours; ++i) {
         Colour& colour = colours_[i];
-        colour.one_sided = (i >= Colouring::two_sided && i < Colouring::colours) || i == overflow_one_sided;
-        const std::uint32_t lanes = i >= Colouring::colours ? 1 : block_lanes;  // overflow: one block per contact
-        colour.blocks.resize((colour.contacts + lanes - 1) / lanes);
+        colour.on_static = i >= Colouring::two_sided;
+        colour.sides = colour.on_static ? Sides::OnlyB : Sides::Both;
+        colour.blocks.resize((colour.contacts + block_lanes - 1) / block_lanes);
         if (colour.contacts == 0) continue;
-        if (i >= Colouring::colours) {
-            counts_.overflow += colour.contacts;
-            for (ContactBlock& block : colour.blocks) clear_block(block, unused_row);
-        } else {
-            ++counts_.colours;
-            clear_block(colour.blocks.back(), unused_row);
+        ++counts_.colours;
+        clear_block(colour.blocks.back(), unused_row);
+    }
+    for (const int i : {overflow_two_sided, overflow_one_sided}) {
+        Colour& colour = colours_[i];
+        const HubBlocks& hub = hubs_[i - overflow_two_sided];
+        colour.on_static = i == overflow_one_sided;
+        colour.sides = Sides::Hub;
+        colour.blocks.resize(hub.size());
+        counts_.overflow += colour.contacts;
+        for (std::size_t block = 0; block < hub.size(); ++block) {
+            clear_block(colour.blocks[block], unused_row);
+            for (int lane = 0; lane < block_lanes; ++lane) colour.blocks[block].split[lane] = hub.split(block, lane);
         }
     }
     parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Slot& slot = slots_[i];
-            const bool overflow = slot.colour >= Colouring::colours;
-            ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.index : slot.index / block_lanes];
-            const int lane = overflow ? 0 : static_cast<int>(slot.index % block_lanes);
-            fill_lane(block, lane, slot, contacts[slot.contact], known_loads_[i], bodies, settings);
+            fill_lane(colours_[slot.colour].blocks[slot.index / block_lanes],
+                      static_cast<int>(slot.index % block_lanes), slot, contacts[slot.contact], known_loads_[i], bodies,
+                      settings);
         }
     });
 }
@@ -296,21 +315,20 @@ void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& t
                     make_softness(frequency, settings.contact_damping_ratio, h),
                     settings.push_out_speed,
                     settings.restitution_threshold};
-    PassInput one_sided = input;  // contacts with static and kinematic bodies are twice as stiff
-    one_sided.softness = make_softness(2 * frequency, 0.5f * settings.contact_damping_ratio, h);
+    PassInput on_static = input;  // contacts with static and kinematic bodies are twice as stiff
+    on_static.softness = make_softness(2 * frequency, 0.5f * settings.contact_damping_ratio, h);
     const auto run = reference ? run_pass_reference : run_pass;
     for (const int overflow : {overflow_two_sided, overflow_one_sided}) {
         Colour& colour = colours_[overflow];
         if (pass == Pass::FindImpacts && !colour.restitution) continue;
-        for (ContactBlock& block : colour.blocks)
-            run(pass, &block, 1, colour.one_sided, colour.one_sided ? one_sided : input);
+        run(pass, colour.blocks.data(), colour.blocks.size(), colour.sides, colour.on_static ? on_static : input);
     }
     for (int i = 0; i < Colouring::colours; ++i) {
         Colour& colour = colours_[i];
         if (pass == Pass::FindImpacts && !colour.restitution) continue;
-        const PassInput& pass_input = colour.one_sided ? one_sided : input;
+        const PassInput& pass_input = colour.on_static ? on_static : input;
         parallel_ranges(tasks, colour.blocks.size(), block_grain, [&](std::size_t begin, std::size_t end) {
-            run(pass, colour.blocks.data() + begin, end - begin, colour.one_sided, pass_input);
+            run(pass, colour.blocks.data() + begin, end - begin, colour.sides, pass_input);
         });
     }
 }
@@ -331,6 +349,7 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
         if (step == 0) run_passes(Pass::WarmStart, settings, tasks);
         run_passes(Pass::Biased, settings, tasks);
         each_body([&](auto rows, auto motions) { integrate_poses(rows, motions, h); });
+        impacts_.correct_paths(rows_, motions_);
         run_passes(Pass::Relax, settings, tasks);
     }
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
@@ -403,9 +422,8 @@ void Solver::store_contacts(std::span<Contact> contacts, const Bodies& bodies, c
     parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const Slot& slot = slots_[s];
-            const bool overflow = slot.colour >= Colouring::colours;
-            const ContactBlock& block = colours_[slot.colour].blocks[overflow ? slot.index : slot.index / block_lanes];
-            const int lane = overflow ? 0 : static_cast<int>(slot.index % block_lanes);
+            const ContactBlock& block = colours_[slot.colour].blocks[slot.index / block_lanes];
+            const int lane = static_cast<int>(slot.index % block_lanes);
             store_contact(contacts[slot.contact], block, lane, slot, bodies, settings);
         }
     });

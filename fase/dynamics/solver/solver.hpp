@@ -11,6 +11,7 @@
 #include "fase/dynamics/solver/colouring.hpp"
 #include "fase/dynamics/solver/contact.hpp"
 #include "fase/dynamics/solver/contact_passes.hpp"
+#include "fase/dynamics/solver/hub_blocks.hpp"
 #include "fase/dynamics/solver/impacts.hpp"
 #include "fase/dynamics/solver/integrate.hpp"
 #include "fase/dynamics/solver/solver_types.hpp"
@@ -30,7 +31,7 @@ struct SolverSettings {
     SpeedLimits speed_limits;
 };
 
-/// Counts of one solve: colours in use, contacts without a colour, bodies whose speed was clamped.
+/// Counts of one solve: colours in use, contacts of hubs, bodies whose speed was clamped.
 struct SolverCounts {
     std::uint32_t colours = 0, overflow = 0, clamped = 0;
 };
@@ -101,6 +102,7 @@ private:
     Colouring colouring_;
     std::array<Colour, Colouring::colours + 2> colours_;  // the last two: overflow, two-sided and one-sided
     std::vector<Slot> slots_;
+    std::array<HubBlocks, 2> hubs_;  // of two-sided contacts, and of those with static bodies
     Impacts impacts_;
     std::vector<float> known_loads_;  // by active contact
     std::vector<Carrier> carriers_;   // by row

@@ -58,6 +58,7 @@ struct alignas(64) ContactBlock {
     float closing[8];      ///< m/s of closing velocity that gravity and forces add per sub-step
     float impact[8];       ///< 1: a point hits with restitution in this sub-step; set by Pass::FindImpacts
     float turns_a[8], turns_b[8];  ///< 1: the points turn with the body; 0: they stay below it when it rolls
+    float split[8];                ///< Sides::Hub: lanes of the block that share body a
 };
 
 /// Coefficients of a soft constraint. Source: Catto 2011, Soft constraints.
@@ -67,11 +68,20 @@ struct Softness {
 /// Returns the coefficients of a spring: `frequency` in Hz, `sub_step` in seconds. A frequency of 0 gives a rigid one.
 [[nodiscard]] Softness make_softness(float frequency, float damping_ratio, float sub_step);
 
-/// Blocks that can be solved in parallel: no dynamic body is in two of them.
+/// Which bodies the contacts of a block may move.
+enum class Sides : std::uint8_t {
+    Both,
+    OnlyB,  ///< every a is static or kinematic: it is read, never written
+    Hub,    ///< lanes may share their body a; b is dynamic in one lane only, or static
+};
+
+/// Contacts of one colour. Blocks of a colour with Sides::Both or OnlyB can be solved in parallel: no dynamic body is
+/// in two of them. Those of a hub are solved in order.
 struct Colour {
     std::vector<ContactBlock> blocks;
     std::uint32_t contacts = 0;
-    bool one_sided = false;    ///< every a is static or kinematic: it is read, never written
+    Sides sides = Sides::Both;
+    bool on_static = false;    ///< one body of each contact is static or kinematic
     bool restitution = false;  ///< a contact may bounce
 };
 
