@@ -36,11 +36,12 @@ public:
         free_.pop_back();
         return issue(index);
     }
-    /// Allocates what the next add() needs, which then cannot fail. Returns size() after it.
-    std::size_t reserve_one() {
-        if (!free_.empty()) return slots_.size();
-        reserve(next_slot() + 1);
-        return next_slot() + 1;
+    /// Allocates what the next `count` calls of add() need, which then cannot fail. Returns size() after them.
+    std::size_t reserve_adds(std::size_t count) {
+        std::size_t size = slots_.size();
+        for (std::size_t i = free_.size(); i < count; ++i) size = next_slot(size) + 1;
+        if (size != slots_.size()) reserve(size);
+        return size;
     }
     /// Frees the slot. Returns false and changes nothing when the id is not valid.
     bool remove(Id<Tag> id) {
@@ -130,9 +131,9 @@ private:
         ++alive_;
         return {index, slots_[index].generation, owner_};
     }
-    /// The index of the next new slot. Skips slots that were retired in a state that the pool went back from.
-    [[nodiscard]] std::size_t next_slot() const {
-        std::size_t index = slots_.size();
+    /// The index of the first new slot, `index` or later. Skips slots that were retired in a state that the pool went
+    /// back from.
+    [[nodiscard]] std::size_t next_slot(std::size_t index) const {
         while (index < newest_.size() && newest_[index] == last_generation) ++index;
         return index;
     }
@@ -144,7 +145,7 @@ private:
         if (free_.capacity() < size) free_.reserve(2 * size);
     }
     Id<Tag> add_slot() {
-        const std::size_t index = next_slot();
+        const std::size_t index = next_slot(slots_.size());
         reserve(index + 1);
         slots_.resize(index + 1, Slot{last_generation, false});
         if (newest_.size() < slots_.size()) newest_.push_back(0);

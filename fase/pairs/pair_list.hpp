@@ -29,14 +29,19 @@ public:
         pairs.clear();
         values.clear();
     }
-    /// Allocates for `count` pairs: move_to() between lists that have room for the pairs of both cannot fail.
+    /// Allocates for `count` pairs, twice as much when it must grow: as long as the list stays this small, update() and
+    /// append() cannot fail.
     void reserve(std::size_t count) {
-        pairs.reserve(count);
-        values.reserve(count);
-        spare_pairs_.reserve(count);
-        spare_values_.reserve(count);
+        const auto grow = [count](auto& v) {
+            if (v.capacity() < count) v.reserve(std::max(count, 2 * v.capacity()));
+        };
+        grow(pairs);
+        grow(values);
+        grow(spare_pairs_);
+        grow(spare_values_);
+        grow(ended_);
     }
-    /// Appends a pair greater than all in the list.
+    /// Appends a pair; one greater than all in the list where update() is used.
     void append(broad::Pair pair, std::uint32_t value) {
         pairs.push_back(pair);
         values.push_back(value);

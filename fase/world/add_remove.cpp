@@ -45,7 +45,7 @@ BodyId make_body(WorldState& state, const BodyDef& def, const BodyShape& shape) 
     state.bodies.motion[id.index] = motion;
     state.bodies.forces[id.index] = {};
     const std::span<const std::uint32_t> one(&id.index, 1);
-    if (traits.motion_state == MotionState::Awake) insert_ascending(state.awake, one);
+    if (traits.motion_state == MotionState::Awake) state.awake_added.push_back(id.index);
     if (traits.motion_state == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
     set_shape(state, id.index, shape);
     if (def.kind != BodyKind::Static) {  // BodyDef gives the velocity of the centre of mass
@@ -70,9 +70,8 @@ void drop_collider(WorldState& state, std::uint32_t index) {
     state.removed_any = true;
 }
 
-/// Adds a collider after reserve_collider(). `shared` is its shape; `shape` that of the body with it.
-ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t shared, const ColliderDef& def,
-                         const BodyShape& shape) {
+/// Makes a collider after reserve_colliders(). It is not yet in the list of its body, and has no box.
+ColliderId new_collider(WorldState& state, std::uint32_t body, std::uint32_t shared, const ColliderDef& def) {
     const ColliderId id = state.collider_ids.add();
     const std::size_t slots = state.collider_ids.size();
     state.colliders.resize(slots);
@@ -89,6 +88,13 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t sh
     collider.density = def.density;
     collider.filter = def.filter;
     collider.user = def.user;
+    return id;
+}
+
+/// Adds a collider after reserve_colliders(). `shared` is its shape; `shape` that of the body with it.
+ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t shared, const ColliderDef& def,
+                         const BodyShape& shape) {
+    const ColliderId id = new_collider(state, body, shared, def);
     dynamics::BodyTraits& traits = state.bodies.traits[body];
     std::uint32_t* link = &traits.first_collider;
     while (*link != no_index) link = &state.colliders[*link].next;
@@ -98,6 +104,19 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t sh
     update_box(state, id.index);
     if (!(frame_before == traits.principal)) update_boxes(state, body);
     return id;
+}
+
+/// Gives a new body all its colliders after reserve_colliders(). `shared` are their shapes; `shape` that of the body.
+void make_colliders(WorldState& state, std::uint32_t body, std::span<const ColliderShape> parts,
+                    std::span<const std::uint32_t> shared, const BodyShape& shape) {
+    std::uint32_t last = no_index;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::uint32_t made = new_collider(state, body, shared[i], parts[i].def).index;
+        (last == no_index ? state.bodies.traits[body].first_collider : state.colliders[last].next) = made;
+        last = made;
+    }
+    set_shape(state, body, shape);
+    update_boxes(state, body);
 }
 
 /// The body of a definition, without colliders.
@@ -139,13 +158,40 @@ Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const Col
         const auto complete = checked_shape_of(state, edit, pose, "World::add_body: ");
         if (!complete) return complete.error();
         reserve_body(state);
-        reserve_collider(state);
-        reserve_wakes(state, 1);
+        reserve_colliders(state, 1);
         const std::uint32_t shared = share_shape(state, shape);
         const BodyId body = make_body(state, def, *bare);
-        if (def.awake) request_wake(state, body.index);
         make_collider(state, body.index, shared, collider, *complete);
         // The collider may have moved the centre of mass; BodyDef gives the velocity of the new one.
+        if (def.kind != BodyKind::Static) state.bodies.motion[body.index].linear_velocity = def.linear_velocity;
+        return body;
+    });
+}
+
+Result<BodyId> World::add_body(const BodyDef& def, std::span<const ColliderShape> colliders) {
+    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+        WorldState& state = *state_;
+        for (std::size_t i = 0; i < colliders.size(); ++i)
+            if (auto checked = check_collider(def.kind, colliders[i].shape, colliders[i].def); !checked) {
+                Error error = checked.error();
+                error.where = "World::add_body: colliders[" + std::to_string(i) + "]: " + error.where;
+                return error;
+            }
+        if (auto checked = check(def); !checked) return checked.error();
+        if (state.stepping) return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
+        const Pose pose{def.position, normalized(def.rotation)};
+        BodyEdit edit = edit_of(def);
+        const auto bare = checked_shape_of(state, edit, pose, "BodyDef: ");
+        if (!bare) return bare.error();
+        edit.parts = colliders;
+        const auto complete = checked_shape_of(state, edit, pose, "World::add_body: ");
+        if (!complete) return complete.error();
+        reserve_body(state);
+        reserve_colliders(state, colliders.size());
+        const std::vector<std::uint32_t> shared = share_shapes(state, colliders);
+        const BodyId body = make_body(state, def, *bare);
+        make_colliders(state, body.index, colliders, shared, *complete);
+        // The colliders have moved the centre of mass; BodyDef gives the velocity of the new one.
         if (def.kind != BodyKind::Static) state.bodies.motion[body.index].linear_velocity = def.linear_velocity;
         return body;
     });
@@ -163,10 +209,10 @@ Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const Co
         const Pose pose = body_pose(traits, state.bodies.motion[body.index]);
         const auto complete = checked_shape_of(state, edit, pose, "World::add_collider: ");
         if (!complete) return complete.error();
-        reserve_collider(state);
+        reserve_colliders(state, 1);
         reserve_wakes(state, 1);
         const std::uint32_t shared = share_shape(state, shape);
-        request_wake(state, body.index);
+        disturb(state, body.index);
         return make_collider(state, body.index, shared, def, *complete);
     });
 }
@@ -182,7 +228,7 @@ Result<void> World::remove_collider(ColliderId collider) {
         const auto rest = checked_shape_of(state, edit, pose, "World::remove_collider: ");
         if (!rest) return rest.error();
         reserve_wakes(state, 1);
-        request_wake(state, body);
+        disturb(state, body);
         unlink_collider(state, collider.index);
         drop_collider(state, collider.index);
         set_shape(state, body, *rest);
@@ -201,9 +247,10 @@ Result<void> World::remove_body(BodyId body) {
             c = next;
         }
         const std::span<const std::uint32_t> one(&body.index, 1);
-        erase_ascending(state.awake, one);
+        remove_awake(state, body.index);
         state.asleep.remove(one);
         std::erase(state.bodies_to_wake, body.index);
+        std::erase(state.bodies_let_go, body.index);
         state.exclusions.remove_all_of(body.index);
         state.bodies.traits[body.index] = {};
         state.body_ids.remove(body);

@@ -9,6 +9,7 @@
 #include "fase/dynamics/material.hpp"
 #include "fase/geometry/aabb.hpp"
 #include "fase/geometry/mass.hpp"
+#include "fase/geometry/shapes.hpp"
 #include "fase/pairs/filter.hpp"
 
 namespace fase {
@@ -44,6 +45,12 @@ struct ColliderDef {
     pairs::CollisionFilter filter{};
     bool sensor = false;     ///< reports overlaps as events; applies no forces and has no mass
     std::uint64_t user = 0;  ///< user data
+};
+
+/// One part of a compound: World::add_body().
+struct ColliderShape {
+    Shape shape;
+    ColliderDef def{};
 };
 
 /// The state of a body.

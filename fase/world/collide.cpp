@@ -225,9 +225,21 @@ bool update_contact(WorldState& state, Contact& c) {
     return false;
 }
 
+/// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
+void check_resting(WorldState& state) {
+    state.checked.clear();
+    state.checked.swap(state.contacts_to_check);
+    std::erase_if(state.checked, [&](std::uint32_t c) { return state.contact_graph.resting_at(c) == no_index; });
+    sort_by_pair(state, state.checked);
+    parallel_ranges(*state.tasks, state.checked.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) update_contact(state, state.contacts[state.checked[i]]);
+    });
+}
+
 }  // namespace
 
 void collide(WorldState& state, float) {
+    check_resting(state);
     state.reused.assign(state.active.size(), 0);
     parallel_ranges(*state.tasks, state.active.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

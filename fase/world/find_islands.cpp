@@ -10,37 +10,49 @@ using dynamics::Contact;
 
 namespace {
 
-bool is_moving(const dynamics::BodyMotion& motion) {
-    return length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
-}
-
-/// Whether the bodies touch in this step: now, or because they close their gap within `seconds`.
-bool will_touch(const WorldState& state, const Contact& c, float seconds) {
-    const float gap = c.nearest;
-    if (gap <= state.settings.linear_slop) return true;
+/// The speed at which the bodies close their gap, m/s; negative: they part.
+float closing_speed(const WorldState& state, const Contact& c) {
     const dynamics::BodyMotion& a = state.bodies.motion[c.body_a];
     const dynamics::BodyMotion& b = state.bodies.motion[c.body_b];
-    const Vec3 relative = a.linear_velocity + cross(a.angular_velocity, c.offset_a) - b.linear_velocity -
-                          cross(b.angular_velocity, c.offset_b);
-    return dot(relative, c.normal) * seconds >= gap;
+    return dot(a.linear_velocity + cross(a.angular_velocity, c.offset_a) - b.linear_velocity -
+                   cross(b.angular_velocity, c.offset_b),
+               c.normal);
+}
+
+/// Wakes sleepers that a moving kinematic body touches, that a dynamic one begins to touch, and those behind a blow.
+/// What a dynamic body already touches wakes in the stage "sleep".
+void wake_touched(WorldState& state, const Contact& c, float seconds) {
+    const auto is_asleep = [&](std::uint32_t body) {
+        return state.bodies.traits[body].motion_state == MotionState::Asleep &&
+               state.bodies.traits[body].kind == BodyKind::Dynamic;
+    };
+    const float speed = closing_speed(state, c);
+    const bool near = c.touching || c.nearest <= state.settings.linear_slop || speed * seconds >= c.nearest;
+    if (!near) return;
+    const bool is_blow = speed > 2 * state.settings.sleep_linear_speed;
+    for (const auto& [mover, other] : {std::pair{c.body_a, c.body_b}, std::pair{c.body_b, c.body_a}}) {
+        const BodyTraits& traits = state.bodies.traits[mover];
+        if (traits.motion_state != MotionState::Awake || state.bodies.traits[other].kind != BodyKind::Dynamic) continue;
+        if (traits.kind == BodyKind::Kinematic) {
+            if (is_moving(state.bodies.motion[mover]) && is_asleep(other)) request_wake(state, other);
+        } else if (is_blow) {
+            state.blows.push_back({other, traits.mass.mass * speed});
+        } else if (!c.touching && is_asleep(other)) {
+            state.blows.push_back({other, 0});
+        }
+    }
 }
 
 }  // namespace
 
 void find_islands(WorldState& state, float seconds) {
-    for (const std::uint32_t index : state.touching) {
-        const Contact& c = state.contacts[index];
-        const BodyTraits& a = state.bodies.traits[c.body_a];
-        const BodyTraits& b = state.bodies.traits[c.body_b];
-        if (a.motion_state == b.motion_state || !will_touch(state, c, seconds)) continue;
-        // Only a body that is not static wakes another: a moving kinematic one, or a dynamic one.
-        if (a.kind != BodyKind::Static && b.kind == BodyKind::Dynamic && b.motion_state == MotionState::Asleep)
-            request_wake(state, c.body_b);
-        if (b.kind != BodyKind::Static && a.kind == BodyKind::Dynamic && a.motion_state == MotionState::Asleep)
-            request_wake(state, c.body_a);
-    }
-    if (!state.bodies_to_wake.empty()) {
-        wake_requested_islands(state);
+    state.blows.clear();
+    if (!state.asleep.bodies.empty())
+        for (const std::uint32_t index : state.touching) wake_touched(state, state.contacts[index], seconds);
+    const std::size_t before = state.awake.size();
+    for (const Blow& blow : state.blows) wake_struck(state, blow.body, blow.momentum);
+    wake_requested_islands(state);
+    if (state.awake.size() != before) {
         // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
         state.touching.clear();
         for (const std::uint32_t index : state.active.values)

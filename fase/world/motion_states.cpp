@@ -56,6 +56,21 @@ bool is_awake(const WorldState& state, std::uint32_t contact) {
            state.bodies.traits[c.body_b].motion_state == MotionState::Awake;
 }
 
+/// Moves the resting contacts of `woken_contacts` to the active list.
+void activate(WorldState& state) {
+    std::vector<std::uint32_t>& contacts = state.woken_contacts;
+    std::vector<Pair>& found = state.woken_pairs;
+    sort_by_pair(state, contacts);
+    found.clear();
+    for (const std::uint32_t contact : contacts) {
+        remove_resting(state, contact);
+        found.push_back({state.contacts[contact].collider_a, state.contacts[contact].collider_b});
+    }
+    std::size_t next = 0;
+    state.active.update(
+        found, [](std::size_t) { return false; }, [](std::uint32_t) {}, [&](Pair) { return contacts[next++]; });
+}
+
 }  // namespace
 
 void apply_edits(WorldState& state) {
@@ -81,25 +96,54 @@ void update_pair_lists(WorldState& state, std::span<const std::uint32_t> bodies)
     const auto for_each_collider = [&](const auto& f) {
         for (const std::uint32_t body : bodies)
             for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
-                f(state.changes[c]);
+                f(c);
     };
-    for_each_collider([](std::uint8_t& change) { change |= state_changed; });
-    const auto is_affected = [&](Pair pair) {
-        return ((state.changes[pair.a] | state.changes[pair.b]) & state_changed) != 0;
-    };
-    pairs::PairList &active = state.active, &resting = state.resting;
-    resting.move_to(active,
-                    [&](std::size_t i) { return is_affected(resting.pairs[i]) && is_awake(state, resting.values[i]); });
-    active.move_to(resting,
-                   [&](std::size_t i) { return is_affected(active.pairs[i]) && !is_awake(state, active.values[i]); });
-    for_each_collider([](std::uint8_t& change) { change = static_cast<std::uint8_t>(change & ~state_changed); });
+    std::vector<std::uint32_t>& woken = state.woken_contacts;
+    woken.clear();
+    bool any_rests = false;
+    for_each_collider([&](std::uint32_t collider) {
+        state.contact_graph.for_each_of(collider, [&](std::uint32_t contact) {
+            const bool rests = state.contact_graph.resting_at(contact) != no_index;
+            if (rests && is_awake(state, contact)) woken.push_back(contact);
+            any_rests |= !rests && !is_awake(state, contact);
+        });
+    });
+    if (!woken.empty()) activate(state);
+    if (!any_rests) return;
+    for_each_collider([&](std::uint32_t collider) { state.changes[collider] |= state_changed; });
+    pairs::PairList& active = state.active;
+    active.update(
+        {},
+        [&](std::size_t i) {
+            return ((state.changes[active.pairs[i].a] | state.changes[active.pairs[i].b]) & state_changed) != 0 &&
+                   !is_awake(state, active.values[i]);
+        },
+        [&](std::uint32_t contact) {
+            add_resting(state, contact);
+            // A sensor looks once more where its visitors stopped.
+            if (state.contacts[contact].sensor) state.contacts_to_check.push_back(contact);
+        },
+        [](Pair) { return no_index; });
+    for_each_collider([&](std::uint32_t collider) {
+        state.changes[collider] = static_cast<std::uint8_t>(state.changes[collider] & ~state_changed);
+    });
+}
+
+void merge_awake_added(WorldState& state) {
+    std::sort(state.awake_added.begin(), state.awake_added.end());
+    insert_ascending(state.awake, state.awake_added);
+    state.awake_added.clear();
+}
+
+void remove_awake(WorldState& state, std::uint32_t body) {
+    if (std::erase(state.awake_added, body) == 0) erase_ascending(state.awake, std::span(&body, 1));
 }
 
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies) {
     if (bodies.empty()) return;
     for (const std::uint32_t body : bodies) {
         state.bodies.traits[body].motion_state = MotionState::Awake;
-        state.bodies.motion[body].sleep_time = 0;
+        if (const auto id = state.body_ids.id_at(body)) state.events.woke_up.push_back(*id);
     }
     state.asleep.remove(bodies);
     insert_ascending(state.awake, bodies);
@@ -119,63 +163,6 @@ void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies) {
     move_boxes(state, bodies, MotionState::Awake, MotionState::Asleep);
     measure_asleep_overhang(state, bodies);
     update_pair_lists(state, bodies);
-}
-
-void request_wake(WorldState& state, std::uint32_t body) {
-    if (state.bodies.traits[body].motion_state == MotionState::Asleep && !state.bodies.traits[body].quarantined)
-        state.bodies_to_wake.push_back(body);
-}
-
-void wake_requested_islands(WorldState& state) {
-    if (state.bodies_to_wake.empty()) return;
-    std::vector<std::uint32_t> islands, bodies;
-    for (const std::uint32_t body : state.bodies_to_wake)
-        if (state.asleep.holds(body)) islands.push_back(state.asleep.island(body));
-    state.bodies_to_wake.clear();
-    std::sort(islands.begin(), islands.end());
-    islands.erase(std::unique(islands.begin(), islands.end()), islands.end());
-    for (const std::uint32_t island : islands)
-        state.asleep.for_each_of(island, [&](std::uint32_t body) {
-            if (!state.bodies.traits[body].quarantined) bodies.push_back(body);
-        });
-    if (bodies.empty()) return;
-    std::sort(bodies.begin(), bodies.end());
-    for (const std::uint32_t body : bodies)
-        if (const auto id = state.body_ids.id_at(body)) state.events.woke_up.push_back(*id);
-    move_to_awake(state, bodies);
-}
-
-std::uint32_t add_contact(WorldState& state, broad::Pair pair) {
-    std::uint32_t index;
-    if (state.free_contacts.empty()) {
-        index = static_cast<std::uint32_t>(state.contacts.size());
-        state.contacts.emplace_back();
-    } else {
-        index = state.free_contacts.back();
-        state.free_contacts.pop_back();
-        state.contacts[index] = {};
-    }
-    dynamics::Contact& contact = state.contacts[index];
-    const Collider& a = state.colliders[pair.a];
-    const Collider& b = state.colliders[pair.b];
-    contact.collider_a = pair.a;
-    contact.collider_b = pair.b;
-    contact.body_a = a.body;
-    contact.body_b = b.body;
-    contact.generation_a = state.collider_ids.slots()[pair.a].generation;
-    contact.generation_b = state.collider_ids.slots()[pair.b].generation;
-    contact.sensor = a.sensor || b.sensor;
-    contact.sensor_is_b = b.sensor;
-    update_materials(state, index);
-    return index;
-}
-
-void update_materials(WorldState& state, std::uint32_t index) {
-    dynamics::Contact& contact = state.contacts[index];
-    const Material& a = state.colliders[contact.collider_a].material;
-    const Material& b = state.colliders[contact.collider_b].material;
-    contact.friction = combined(a.friction, a.friction_combine, b.friction, b.friction_combine);
-    contact.restitution = combined(a.restitution, a.restitution_combine, b.restitution, b.restitution_combine);
 }
 
 }  // namespace fase

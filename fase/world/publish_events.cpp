@@ -36,19 +36,12 @@ template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
 
 void publish_events(WorldState& state) {
     Events& events = state.events;
+    for (const std::uint32_t index : state.checked)  // one that woke in this step is in the active list now
+        if (state.contact_graph.resting_at(index) != no_index)
+            set_touching(state, state.contacts[index], touches(state, state.contacts[index]));
     for (const std::uint32_t index : state.active.values) {
         Contact& c = state.contacts[index];
-        const bool now = touches(state, c);
-        if (now != c.touching) {
-            const ContactEvent ids = ids_of(state, c);
-            if (c.sensor) {
-                const SensorEvent event = c.sensor_is_b ? SensorEvent{ids.b, ids.a} : SensorEvent{ids.a, ids.b};
-                (now ? events.sensors_begun : events.sensors_ended).push_back(event);
-            } else {
-                (now ? events.contacts_begun : events.contacts_ended).push_back(ids);
-            }
-            c.touching = now;
-        }
+        set_touching(state, c, touches(state, c));
         if (c.pushes && c.approach > state.settings.restitution_threshold) {
             HitEvent hit{{}, {}, hit_point(state, c), c.normal, c.approach, 0};
             const ContactEvent ids = ids_of(state, c);
@@ -61,12 +54,14 @@ void publish_events(WorldState& state) {
         c.approach = 0;
     }
     const auto pair_key = [](const ContactEvent& e) { return std::tuple{e.a.index, e.b.index, e.a.generation}; };
+    sort_by(events.contacts_begun, pair_key);
     sort_by(events.contacts_ended, pair_key);
     const auto sensor_key = [](const SensorEvent& e) {
         return std::tuple{e.sensor.index, e.visitor.index, e.sensor.generation};
     };
     sort_by(events.sensors_begun, sensor_key);
     sort_by(events.sensors_ended, sensor_key);
+    sort_by(events.woke_up, [](BodyId id) { return id.index; });
 }
 
 }  // namespace fase

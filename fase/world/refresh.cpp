@@ -31,6 +31,7 @@ void limit_speeds(WorldState& state) {
 }  // namespace
 
 void refresh_boxes(WorldState& state, float seconds) {
+    merge_awake_added(state);
     wake_requested_islands(state);
     limit_speeds(state);
     state.sweep.assign(state.bodies.traits.size(), 0);  // bodies that rest do not keep the sweep of an earlier step

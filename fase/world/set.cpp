@@ -24,12 +24,22 @@ Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::B
     return free(rotate(motion.rotation, multiply(local, traits.inverse_moments)));
 }
 
+/// The next step looks for pairs of two bodies anew, from the side of the one that does not hold a whole world.
+void update_pairs_between(WorldState& state, std::uint32_t a, std::uint32_t b) {
+    update_boxes(state, state.bodies.traits[a].kind == BodyKind::Dynamic ? a : b);
+}
+
 }  // namespace
 
-void reserve_pair_moves(WorldState& state) {
-    const std::size_t all = state.active.size() + state.resting.size();
-    state.active.reserve(all);
-    state.resting.reserve(all);
+void reserve_pair_moves(WorldState& state, std::uint32_t body) {
+    std::size_t contacts = 0;
+    for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
+        state.contact_graph.for_each_of(c, [&](std::uint32_t) { ++contacts; });
+    state.active.reserve(state.active.size() + contacts);
+    state.resting.reserve(state.resting.size() + contacts);
+    reserve_for(state.contacts_to_check, state.contacts_to_check.size() + contacts);
+    reserve_for(state.woken_contacts, contacts);
+    reserve_for(state.woken_pairs, contacts);
 }
 
 void update_motion_state(WorldState& state, std::uint32_t body) {
@@ -42,7 +52,7 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
                                                                : MotionState::Asleep;
     if (now == traits.motion_state) return;
     const std::span<const std::uint32_t> one(&body, 1);
-    erase_ascending(state.awake, one);
+    remove_awake(state, body);
     state.asleep.remove(one);
     traits.motion_state = now;
     state.bodies.motion[body].island = body;
@@ -56,11 +66,16 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
 Result<void> World::set_settings(const Settings& settings) {
     return guarded(*state_, "set_settings", [&]() -> Result<void> {
         if (auto checked = check(settings); !checked) return checked;
-        const bool sleep_ended = state_->settings.sleep && !settings.sleep;
-        if (sleep_ended) reserve_wakes(*state_, state_->asleep.bodies.size());
+        const Settings& before = state_->settings;
+        const bool disturbs = !(before.gravity == settings.gravity) ||
+                              before.contact_frequency != settings.contact_frequency ||
+                              before.contact_damping_ratio != settings.contact_damping_ratio ||
+                              before.push_out_speed != settings.push_out_speed || (before.sleep && !settings.sleep);
+        if (disturbs) reserve_wakes(*state_, state_->asleep.bodies.size());
         state_->settings = settings;
-        if (sleep_ended)
-            for (const std::uint32_t body : state_->asleep.bodies) request_wake(*state_, body);
+        if (!disturbs) return {};
+        for (const std::uint32_t body : state_->asleep.bodies) disturb(*state_, body);
+        for (const std::uint32_t body : state_->awake) disturb(*state_, body);
         return {};
     });
 }
@@ -78,7 +93,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
         motion.position = placed.position;
         motion.rotation = normalized(placed.rotation);
         update_boxes(*state_, body.index);
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -94,8 +109,7 @@ Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
         dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        motion.sleep_time = 0;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -129,8 +143,12 @@ Result<void> World::move_kinematic(BodyId body, const Pose& target, float second
             const float t = s / c, t2 = t * t;
             angle = scale * t * (1 - t2 * (1.0f / 3 - t2 * (1.0f / 5 - t2 * (1.0f / 7))));
         }
+        // A target read from the body itself differs by rounding. That is no motion, and must keep nobody awake.
+        constexpr float rounding = 1e-6f;  // metres and radians; what is left out adds up in the next target
+        const Vec3 way = to_float(placed.position - motion.position);
+        if (length_squared(way) < rounding * rounding && angle < rounding) return set_velocity(body, {}, {});
         const Vec3 angular = sine > 0 ? turn.vector() * (angle / (sine * seconds)) : Vec3{};
-        return set_velocity(body, to_float(placed.position - motion.position) * (1 / seconds), angular);
+        return set_velocity(body, way * (1 / seconds), angular);
     });
 }
 
@@ -151,9 +169,9 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
         const Pose pose = body_pose(traits, state.bodies.motion[body.index]);
         const auto shape = checked_shape_of(state, edit, pose, "World::set_kind: ");
         if (!shape) return shape.error();
-        reserve_pair_moves(state);
+        reserve_pair_moves(state, body.index);
         traits.kind = kind;
-        state.bodies.forces[body.index] = {};
+        state.bodies.forces[body.index] = {};  // they were meant for the body as it was
         if (kind == BodyKind::Static) {
             state.bodies.motion[body.index].linear_velocity = {};
             state.bodies.motion[body.index].angular_velocity = {};
@@ -183,7 +201,7 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
         set_shape(*state_, body.index, *shape);
         if (!(frame_before == traits.principal))
             update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -193,8 +211,10 @@ Result<void> World::set_damping(BodyId body, float linear, float angular) {
         if (!contains(body)) return stale_id("World::set_damping");
         if (auto r = check_number(linear, 0, limits::damping, "World::set_damping: linear"); !r) return r;
         if (auto r = check_number(angular, 0, limits::damping, "World::set_damping: angular"); !r) return r;
+        reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].linear_damping = linear;
         state_->bodies.traits[body.index].angular_damping = angular;
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -206,7 +226,7 @@ Result<void> World::set_gravity_scale(BodyId body, float scale) {
             return r;
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].gravity_scale = scale;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -216,7 +236,7 @@ Result<void> World::set_locks(BodyId body, AxisLocks locks) {
         if (!contains(body)) return stale_id("World::set_locks");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].locks = bits_of(locks);
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -226,7 +246,7 @@ Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
         if (!contains(body)) return stale_id("World::set_can_sleep");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].can_sleep = can_sleep;
-        if (!can_sleep) request_wake(*state_, body.index);
+        if (!can_sleep) disturb(*state_, body.index);
         return {};
     });
 }
@@ -235,8 +255,7 @@ Result<void> World::wake(BodyId body) {
     return guarded(*state_, "World::wake", [&]() -> Result<void> {
         if (!contains(body)) return stale_id("World::wake");
         reserve_wakes(*state_, 1);
-        state_->bodies.motion[body.index].sleep_time = 0;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -245,16 +264,23 @@ Result<void> World::set_material(ColliderId collider, const Material& material) 
     return guarded(*state_, "set_material", [&]() -> Result<void> {
         if (!contains(collider)) return stale_id("World::set_material");
         if (auto checked = check(material); !checked) return checked;
-        reserve_wakes(*state_, 1);
-        state_->colliders[collider.index].material = material;
-        const auto renew = [&](pairs::PairList& list) {
-            for (std::size_t i = 0; i < list.size(); ++i)
-                if (list.pairs[i].a == collider.index || list.pairs[i].b == collider.index)
-                    update_materials(*state_, list.values[i]);
-        };
-        renew(state_->active);
-        renew(state_->resting);
-        request_wake(*state_, state_->colliders[collider.index].body);
+        WorldState& state = *state_;
+        std::size_t contacts = 0;
+        state.contact_graph.for_each_of(collider.index, [&](std::uint32_t) { ++contacts; });
+        reserve_wakes(state, 2 * contacts + 1);
+        state.colliders[collider.index].material = material;
+        const std::size_t wakes_before = state.bodies_to_wake.size();
+        state.contact_graph.for_each_of(collider.index, [&](std::uint32_t index) {
+            const dynamics::Contact& c = state.contacts[index];
+            for (const auto& [other, generation, body] : sides_of(c))
+                if (!is_current(state, other, generation)) return;  // its collider was removed: the next step ends it
+            update_materials(state, index);
+            if (!c.sensor && c.touching)
+                for (const auto& side : sides_of(c)) disturb(state, side.body);
+        });
+        disturb(state, state.colliders[collider.index].body);
+        // The order of a collider's contacts is not the same after a restore; the list is part of the hash.
+        std::sort(state.bodies_to_wake.begin() + static_cast<std::ptrdiff_t>(wakes_before), state.bodies_to_wake.end());
         return {};
     });
 }
@@ -265,7 +291,7 @@ Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter
         reserve_wakes(*state_, 1);
         state_->colliders[collider.index].filter = filter;
         update_box(*state_, collider.index);
-        request_wake(*state_, state_->colliders[collider.index].body);
+        disturb(*state_, state_->colliders[collider.index].body);
         return {};
     });
 }
@@ -276,9 +302,9 @@ Result<void> World::exclude_pair(BodyId a, BodyId b) {
         if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
         reserve_wakes(*state_, 2);
         if (!state_->exclusions.add(a.index, b.index)) return {};
-        update_boxes(*state_, a.index);
-        request_wake(*state_, a.index);
-        request_wake(*state_, b.index);
+        update_pairs_between(*state_, a.index, b.index);
+        disturb(*state_, a.index);
+        disturb(*state_, b.index);
         return {};
     });
 }
@@ -288,9 +314,9 @@ Result<void> World::include_pair(BodyId a, BodyId b) {
         if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
         reserve_wakes(*state_, 2);
         if (!state_->exclusions.remove(a.index, b.index)) return {};
-        update_boxes(*state_, a.index);
-        request_wake(*state_, a.index);
-        request_wake(*state_, b.index);
+        update_pairs_between(*state_, a.index, b.index);
+        disturb(*state_, a.index);
+        disturb(*state_, b.index);
         return {};
     });
 }
@@ -309,6 +335,7 @@ Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
             return checked;
         if (auto checked = check_position(point, "World::apply_force: point"); !checked) return checked;
         if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_force");
+        if (newtons == Vec3{}) return {};
         const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
         dynamics::BodyForces sum = state_->bodies.forces[body.index];
         sum.force += newtons;
@@ -316,7 +343,7 @@ Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
         if (auto checked = check_forces(sum, "World::apply_force"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -326,12 +353,13 @@ Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
         if (!contains(body)) return stale_id("World::apply_torque");
         if (auto checked = check_vector(newton_metres, limits::torque, "World::apply_torque"); !checked) return checked;
         if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
+        if (newton_metres == Vec3{}) return {};
         dynamics::BodyForces sum = state_->bodies.forces[body.index];
         sum.torque += newton_metres;
         if (auto checked = check_forces(sum, "World::apply_torque"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -361,8 +389,7 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
         reserve_wakes(*state_, 1);
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        motion.sleep_time = 0;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }
@@ -379,8 +406,7 @@ Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds
         if (auto checked = check_velocity({}, angular, "World::apply_angular_impulse: "); !checked) return checked;
         reserve_wakes(*state_, 1);
         motion.angular_velocity = angular;
-        motion.sleep_time = 0;
-        request_wake(*state_, body.index);
+        disturb(*state_, body.index);
         return {};
     });
 }

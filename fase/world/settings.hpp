@@ -34,7 +34,7 @@ struct Settings {
 
     // Sleep. A body is at rest when for `time_to_sleep` seconds it was slower than both speeds, and the net motion of
     // its points stayed below `sleep_distance`. An island falls asleep when all its bodies are at rest, except for a
-    // share of `sleep_tolerance`.
+    // share of `sleep_tolerance`; parts of it that have rested for twice that time, when little else moves.
     bool sleep = true;                 ///< false: dynamic bodies never fall asleep
     float sleep_linear_speed = 0.15f;  ///< m/s
     float sleep_angular_speed = 0.3f;  ///< rad/s

@@ -214,9 +214,10 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
 /// The one list of all state of a world that is hashed and saved.
 template <class A> void describe(A& a, WorldState& s) {
     all(a, s.settings, s.steps, s.time, s.last_sub_step, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces,
-        s.collider_ids, s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.asleep.bodies,
-        s.active.pairs, s.active.values, s.resting.pairs, s.resting.values, s.contacts, s.free_contacts,
-        s.edited_colliders, s.bodies_to_wake, s.removed_any, s.query_all_awake);
+        s.collider_ids, s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.awake_added,
+        s.asleep.bodies, s.active.pairs, s.active.values, s.resting.pairs, s.resting.values, s.contacts,
+        s.free_contacts, s.edited_colliders, s.bodies_to_wake, s.bodies_let_go, s.contacts_to_check, s.removed_any,
+        s.query_all_awake);
     std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
@@ -309,7 +310,8 @@ Result<std::span<const std::byte>> payload_of(std::span<const std::byte> snapsho
     return payload;
 }
 
-/// Builds what a snapshot does not hold: sets of boxes, links of sleepers, keys of shapes, memory for edits.
+/// Builds what a snapshot does not hold: sets of boxes, links of contacts and sleepers, keys of shapes, memory for
+/// edits.
 void complete(WorldState& next) {
     next.box_sets = make_box_sets(next.structure);
     next.set_of.assign(next.colliders.size(), 0);
@@ -321,7 +323,9 @@ void complete(WorldState& next) {
         next.set_of[c] = static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(motion_state));
     }
     next.box_sets.commit_as_they_are();
+    rebuild_contact_graph(next);
     next.awake.reserve(next.bodies.traits.size());
+    next.awake_added.reserve(next.bodies.traits.size());
     next.asleep.reserve(next.bodies.traits.size());
     next.asleep.relink(next.bodies.motion);
     next.edited_colliders.reserve(next.colliders.size());

@@ -97,7 +97,31 @@ void solve(WorldState& state, float seconds) {
             ++state.report.speed_clamped;
 }
 
+namespace {
+
+/// Marks the bodies on which a contact acted in this step.
+void mark_held(WorldState& state) {
+    state.held.resize(state.bodies.traits.size());
+    for (const std::uint32_t body : state.awake) state.held[body] = 0;
+    for (const std::uint32_t index : state.touching) {
+        const dynamics::Contact& c = state.contacts[index];
+        if (c.pushes) state.held[c.body_a] = state.held[c.body_b] = 1;
+    }
+}
+
+/// Whether gravity alone acts on a body: it is slow only because it has just begun to fall.
+bool falls(const WorldState& state, std::uint32_t body) {
+    const BodyTraits& traits = state.bodies.traits[body];
+    const Vec3 gravity = state.settings.gravity * (traits.inverse_mass > 0 ? traits.gravity_scale : 0);
+    const Vec3 free{traits.locks & 1 ? 0 : gravity.x, traits.locks & 2 ? 0 : gravity.y,
+                    traits.locks & 4 ? 0 : gravity.z};
+    return state.held[body] == 0 && length_squared(free) > 0;
+}
+
+}  // namespace
+
 void finish(WorldState& state, float seconds) {
+    mark_held(state);
     const float linear = state.settings.sleep_linear_speed, angular = state.settings.sleep_angular_speed;
     const float distance = state.settings.sleep_distance;
     state.reused.assign(state.awake.size(), 0);  // reused as flags of bodies with invalid motion
@@ -126,8 +150,9 @@ void finish(WorldState& state, float seconds) {
             const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
                               length_squared(next.angular_velocity) < angular * angular;
-            const bool still = length_squared(next.linear_velocity) == 0 && length_squared(next.angular_velocity) == 0;
-            const bool rests = traits.kind == BodyKind::Dynamic ? slow && stays && traits.can_sleep : still;
+            const bool rests = traits.kind == BodyKind::Dynamic
+                                   ? slow && stays && traits.can_sleep && !falls(state, body)
+                                   : !is_moving(next);
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
             // The net motion is measured within each span of time_to_sleep, not since the body came to rest.
             const float span = state.settings.time_to_sleep;

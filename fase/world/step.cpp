@@ -22,7 +22,7 @@ std::uint64_t bytes_held(const WorldState& s) {
     for (const broad::WideBvh& tree : s.query.trees) trees += tree.bytes();
     return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
            of(s.contacts) + s.active.bytes() + s.resting.bytes() + of(s.candidates) + of(s.query_boxes) +
-           of(s.previous_boxes) + s.box_sets.bytes() + s.asleep.bytes() + s.solver.bytes();
+           of(s.previous_boxes) + s.contact_graph.bytes() + s.box_sets.bytes() + s.asleep.bytes() + s.solver.bytes();
 }
 
 }  // namespace

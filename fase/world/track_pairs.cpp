@@ -7,17 +7,6 @@ namespace fase {
 
 using broad::Pair;
 
-namespace {
-
-bool same_collider(const WorldState& state, std::uint32_t index, std::uint16_t generation) {
-    return state.collider_ids.alive_at(index) && state.collider_ids.slots()[index].generation == generation;
-}
-/// Neither collider was removed since the contact was made (its slot may have a new owner by now).
-bool is_current(const WorldState& state, const dynamics::Contact& c) {
-    return same_collider(state, c.collider_a, c.generation_a) && same_collider(state, c.collider_b, c.generation_b);
-}
-
-/// Whether two colliders may make a contact: by kinds, sensors, filters and exclusions.
 bool may_make_contact(const WorldState& state, Pair pair) {
     const Collider& a = state.colliders[pair.a];
     const Collider& b = state.colliders[pair.b];
@@ -31,36 +20,16 @@ bool may_make_contact(const WorldState& state, Pair pair) {
     return pairs::may_collide(a.filter, b.filter) && !state.exclusions.contains(a.body, b.body);
 }
 
-void end_contact(WorldState& state, std::uint32_t index) {
-    dynamics::Contact& c = state.contacts[index];
-    if (c.touching) {
-        const ContactEvent event{{c.collider_a, c.generation_a, state.collider_ids.owner()},
-                                 {c.collider_b, c.generation_b, state.collider_ids.owner()}};
-        if (c.sensor) {
-            state.events.sensors_ended.push_back(c.sensor_is_b ? SensorEvent{event.b, event.a}
-                                                               : SensorEvent{event.a, event.b});
-        } else {
-            state.events.contacts_ended.push_back(event);
-        }
-    }
-    c = {};
-    state.free_contacts.push_back(index);
+bool has_ended(const WorldState& state, Pair pair, std::uint32_t contact) {
+    const auto change = static_cast<std::uint8_t>(state.changes[pair.a] | state.changes[pair.b]);
+    if (change == 0) return false;
+    if (change & edited)
+        for (const auto& [collider, generation, body] : sides_of(state.contacts[contact]))
+            if (!is_current(state, collider, generation)) return true;
+    return !overlaps(state.boxes[pair.a], state.boxes[pair.b]) || ((change & edited) && !may_make_contact(state, pair));
 }
 
-/// Wakes the bodies that rest on a collider that was removed, moved or changed.
-void wake_around_edits(WorldState& state) {
-    for (std::size_t i = 0; i < state.resting.size(); ++i) {
-        const Pair pair = state.resting.pairs[i];
-        if (!((state.changes[pair.a] | state.changes[pair.b]) & edited)) continue;
-        const dynamics::Contact& c = state.contacts[state.resting.values[i]];
-        if (c.sensor || c.count == 0) continue;
-        for (const auto& [collider, generation, body] :
-             {std::tuple{c.collider_a, c.generation_a, c.body_a}, std::tuple{c.collider_b, c.generation_b, c.body_b}})
-            if (same_collider(state, collider, generation)) request_wake(state, body);
-    }
-    wake_requested_islands(state);
-    for (const MotionState changed : {MotionState::Awake, MotionState::Asleep}) state.box_sets.of(changed).commit();
-}
+namespace {
 
 /// Collects the boxes that may have new pairs: of colliders that left their fat box, or that the user added or changed.
 void gather_queries(WorldState& state) {
@@ -138,17 +107,9 @@ void find_candidates(WorldState& state) {
     state.candidates.erase(std::unique(state.candidates.begin(), state.candidates.end()), state.candidates.end());
 }
 
-/// Whether a pair of a list ends: its boxes parted, or a collider was removed or changed. Reads two bytes of pairs that
-/// did not change.
-bool has_ended(const WorldState& state, Pair pair, std::uint32_t contact) {
-    const auto change = static_cast<std::uint8_t>(state.changes[pair.a] | state.changes[pair.b]);
-    if (change == 0) return false;
-    if ((change & edited) && !is_current(state, state.contacts[contact])) return true;
-    return !overlaps(state.boxes[pair.a], state.boxes[pair.b]) || ((change & edited) && !may_make_contact(state, pair));
-}
-
-/// Adds new pairs to a list with their contacts, and ends pairs and contacts.
-void update_list(WorldState& state, pairs::PairList& list, std::span<const Pair> found) {
+/// Adds new pairs to the active list with their contacts, and ends pairs and contacts.
+void update_active(WorldState& state, std::span<const Pair> found) {
+    pairs::PairList& list = state.active;
     list.update(
         found,
         [&](std::size_t i) {
@@ -161,6 +122,19 @@ void update_list(WorldState& state, pairs::PairList& list, std::span<const Pair>
         [&](Pair pair) { return add_contact(state, pair); });
 }
 
+/// Disturbs what an added or moved collider overlaps, unless it was added asleep.
+void disturb_overlapped(WorldState& state) {
+    for (const Pair pair : state.candidates)
+        for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
+            const dynamics::BodyTraits& traits = state.bodies.traits[state.colliders[obstacle].body];
+            const bool added_asleep = traits.kind == BodyKind::Dynamic && traits.motion_state == MotionState::Asleep;
+            if ((state.changes[obstacle] & edited) && !(state.changes[other] & edited) && !added_asleep &&
+                !state.colliders[obstacle].sensor && !state.colliders[other].sensor)
+                disturb(state, state.colliders[other].body);
+        }
+    wake_requested_islands(state);
+}
+
 }  // namespace
 
 void track_pairs(WorldState& state) {
@@ -169,20 +143,15 @@ void track_pairs(WorldState& state) {
     state.box_sets.of(MotionState::Awake).move(*state.tasks, state.query_boxes);
     state.box_sets.commit(*state.tasks);
     const bool edits = state.removed_any || !state.edited_colliders.empty();
-    if (edits) wake_around_edits(state);
+    if (edits) {
+        disturb_around_edits(state);
+        wake_requested_islands(state);
+        for (const MotionState changed : {MotionState::Awake, MotionState::Asleep}) state.box_sets.of(changed).commit();
+    }
     gather_queries(state);
     if (!state.query_boxes.empty() || edits) {
         find_candidates(state);
-        // An added or moved collider wakes what it touches, unless it was added asleep.
-        for (const Pair pair : state.candidates)
-            for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
-                const bool acts =
-                    (state.changes[obstacle] & edited) && !(state.changes[other] & edited) &&
-                    !state.colliders[obstacle].sensor &&
-                    state.bodies.traits[state.colliders[obstacle].body].motion_state != MotionState::Asleep;
-                if (acts) request_wake(state, state.colliders[other].body);
-            }
-        wake_requested_islands(state);
+        disturb_overlapped(state);
         const auto awake_pair = [&](Pair pair) {
             return state.bodies.traits[state.colliders[pair.a].body].motion_state == MotionState::Awake ||
                    state.bodies.traits[state.colliders[pair.b].body].motion_state == MotionState::Awake;
@@ -195,9 +164,8 @@ void track_pairs(WorldState& state) {
             state.report.pairs_dropped += static_cast<std::uint32_t>(active - room);
             state.query_all_awake = state.query_all_awake || room < active;
         }
-        update_list(state, state.active, std::span<const Pair>(state.candidates).first(room));
-        if (edits || active < state.candidates.size())
-            update_list(state, state.resting, std::span<const Pair>(state.candidates).subspan(active));
+        update_active(state, std::span<const Pair>(state.candidates).first(room));
+        update_resting(state, std::span<const Pair>(state.candidates).subspan(active));
     }
     for (const std::uint32_t c : state.moved) state.changes[c] = 0;
     for (const std::uint32_t c : state.edited_colliders)

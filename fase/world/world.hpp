@@ -50,6 +50,9 @@ public:
     Result<BodyId> add_body(const BodyDef& def);
     /// Adds a body with one collider.
     Result<BodyId> add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider = {});
+    /// Adds a body with many colliders, in their order, or nothing when one of them is refused. O(colliders), where
+    /// adding them one by one recomputes the mass each time.
+    Result<BodyId> add_body(const BodyDef& def, std::span<const ColliderShape> colliders);
     /// Adds a collider to a body and wakes the body. Recomputes its mass unless the mass was given.
     Result<ColliderId> add_collider(BodyId body, const Shape& shape, const ColliderDef& def = {});
     /// Removes a body and its colliders; bodies that touched it wake.

@@ -196,5 +196,57 @@ TEST(Edit, equal_shapes_are_stored_once) {
     EXPECT_EQ(WorldStateAccess::of(world).shapes.size(), 1u);
 }
 
+TEST(Edit, forces_are_forgotten_when_a_body_changes_its_kind) {
+    Settings settings;
+    settings.gravity = {};
+    for (const BodyKind kind : {BodyKind::Static, BodyKind::Kinematic}) {
+        World world = make_world(settings);
+        const BodyId ball = add(world, {}, Sphere{});
+        opened(world.apply_force(ball, {1e5f, 0, 0}));
+        opened(world.apply_torque(ball, {1e5f, 0, 0}));
+        opened(world.set_kind(ball, kind));
+        run(world, 0.5);
+        opened(world.set_kind(ball, BodyKind::Dynamic));
+        ASSERT_TRUE(world.step());
+        EXPECT_EQ(state(world, ball).linear_velocity, Vec3{});
+        EXPECT_EQ(state(world, ball).angular_velocity, Vec3{});
+    }
+}
+
+TEST(Edit, a_compound_made_at_once_is_the_one_made_part_by_part) {
+    std::vector<ColliderShape> parts;
+    for (int i = 0; i < 30; ++i)
+        parts.push_back(
+            {Box{{0.2f, 0.1f + 0.01f * i, 0.3f}},
+             {.pose = {{0.3f * i, 0.1f * (i % 3), 0}, {}}, .sensor = i % 7 == 3, .user = std::uint64_t(i)}});
+    const BodyDef def{.position = {0, 2, 0}, .linear_velocity = {1, 0, 0}};
+    World at_once = make_world(), by_part = make_world();
+    add_ground(at_once);
+    add_ground(by_part);
+    const auto whole = at_once.add_body(def, parts);
+    ASSERT_TRUE(whole);
+    const BodyId built = add(by_part, def, parts[0].shape, parts[0].def);
+    for (std::size_t i = 1; i < parts.size(); ++i)
+        ASSERT_TRUE(by_part.add_collider(built, parts[i].shape, parts[i].def));
+    opened(by_part.set_velocity(built, {1, 0, 0}, {}));
+    ASSERT_EQ(at_once.colliders_of(*whole).size(), parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        EXPECT_EQ(at_once.collider(at_once.colliders_of(*whole)[i])->def.user, i);
+    EXPECT_EQ(state(at_once, *whole).mass, state(by_part, built).mass);
+    run(at_once, 1);
+    run(by_part, 1);
+    EXPECT_LT(length(state(at_once, *whole).pose.position - state(by_part, built).pose.position), 1e-3);
+}
+
+TEST(Edit, a_compound_with_one_bad_part_adds_nothing) {
+    World world = make_world();
+    add_ground(world);
+    const std::uint64_t before = world.hash();
+    const std::vector<ColliderShape> parts{{Box{}}, {Sphere{-1}}};
+    EXPECT_FALSE(world.add_body({}, parts));
+    EXPECT_EQ(world.hash(), before);
+    EXPECT_EQ(world.body_count(), 1u);
+}
+
 }  // namespace
 }  // namespace fase

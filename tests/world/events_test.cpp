@@ -152,5 +152,98 @@ TEST(Events, sleeping_and_waking_are_reported) {
     EXPECT_EQ(woke, 1);
 }
 
+/// Counts sensor events while a world runs.
+struct SensorCount {
+    int begun = 0, ended = 0;
+    friend bool operator==(const SensorCount&, const SensorCount&) = default;
+};
+SensorCount count_sensor_events(World& world, int steps = 60) {
+    SensorCount count;
+    for (int i = 0; i < steps; ++i) {
+        EXPECT_TRUE(world.step());
+        count.begun += static_cast<int>(world.events().sensors_begun.size());
+        count.ended += static_cast<int>(world.events().sensors_ended.size());
+    }
+    return count;
+}
+constexpr Box zone{{2, 1, 2}};
+const ColliderDef as_sensor{.sensor = true};
+
+struct SleepingBox {
+    World world = make_world();
+    BodyId ground = add_ground(world);
+    BodyId box = add(world, {.position = {0, 0.5, 0}}, Box{});
+    SleepingBox() {
+        run(world, 3);
+        EXPECT_FALSE(state(world, box).awake);
+    }
+};
+TEST(Events, a_sensor_made_over_a_sleeper_reports_it_and_wakes_nobody) {
+    SleepingBox t;
+    add(t.world, {.kind = BodyKind::Static, .position = {0, 1, 0}}, zone, as_sensor);
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+    EXPECT_FALSE(state(t.world, t.box).awake);
+}
+TEST(Events, a_sensor_moved_off_a_sleeper_by_two_centimetres_reports_the_end) {
+    SleepingBox t;
+    const BodyId sensor = add(t.world, {.kind = BodyKind::Static, .position = {0, 1, 0}}, zone, as_sensor);
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+    opened(t.world.set_pose(sensor, {{2.52, 1, 0}, {}}));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{0, 1}));
+    opened(t.world.set_pose(sensor, {{20, 1, 0}, {}}));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{0, 0}));
+    opened(t.world.set_pose(sensor, {{0, 1, 0}, {}}));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+    opened(t.world.remove_body(sensor));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{0, 1}));
+}
+TEST(Events, a_sensor_added_to_a_static_body_reports_the_sleeper_in_it) {
+    SleepingBox t;
+    const BodyId pillar = add(t.world, {.kind = BodyKind::Static, .position = {0, 0.5, 5}}, Box{});
+    run(t.world, 1);
+    opened(t.world.add_collider(pillar, Box{{0.5f, 0.5f, 6}}, as_sensor));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+}
+TEST(Events, filters_of_sensors_over_sleepers_begin_and_end_visits) {
+    SleepingBox t;
+    const BodyId sensor = add(t.world, {.kind = BodyKind::Static, .position = {0, 1, 0}}, zone, as_sensor);
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+    const ColliderId collider = t.world.colliders_of(sensor)[0];
+    opened(t.world.set_filter(collider, {.category = 1, .mask = 0}));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{0, 1}));
+    opened(t.world.set_filter(collider, {}));
+    EXPECT_EQ(count_sensor_events(t.world), (SensorCount{1, 0}));
+}
+TEST(Events, a_body_made_asleep_inside_a_sensor_is_reported) {
+    World world = make_world();
+    add_ground(world);
+    add(world, {.kind = BodyKind::Static, .position = {0, 1, 0}}, zone, as_sensor);
+    add(world, {.position = {0, 0.5, 0}, .awake = false}, Box{});
+    EXPECT_EQ(count_sensor_events(world), (SensorCount{1, 0}));
+}
+TEST(Events, a_sensor_moved_onto_a_resting_kinematic_body_reports_it) {
+    World world = make_world();
+    const BodyId sensor = add(world, {.kind = BodyKind::Static}, zone, as_sensor);
+    const BodyId lift = add(world, {.kind = BodyKind::Kinematic, .position = {9, 0, 0}}, Box{});
+    EXPECT_EQ(count_sensor_events(world), (SensorCount{0, 0}));
+    opened(world.set_pose(sensor, {{9, 0, 0}, {}}));
+    EXPECT_EQ(count_sensor_events(world), (SensorCount{1, 0}));
+    opened(world.set_pose(lift, {{11.6, 0, 0}, {}}));
+    EXPECT_EQ(count_sensor_events(world), (SensorCount{0, 1}));
+}
+TEST(Events, a_body_made_asleep_begins_and_ends_its_contacts) {
+    World world = make_world();
+    const BodyId floor = add(world, {.kind = BodyKind::Static, .position = {0, -0.5, 0}}, Box{{5, 0.5f, 5}});
+    add(world, {.position = {0, 0.5, 0}, .awake = false}, Box{});
+    ASSERT_TRUE(world.step());
+    EXPECT_EQ(world.events().contacts_begun.size(), 1u);
+    std::vector<ContactState> contacts;
+    world.read_contacts(contacts);
+    EXPECT_EQ(contacts.size(), 1u);
+    opened(world.remove_body(floor));
+    ASSERT_TRUE(world.step());
+    EXPECT_EQ(world.events().contacts_ended.size(), 1u);
+}
+
 }  // namespace
 }  // namespace fase

@@ -33,6 +33,7 @@ World make_crowd(const std::string& structure, int steps) {
         add(world, {.position = {0.1 * i, 0.5 + i, 0}}, i % 2 ? Shape(Box{}) : Shape(Sphere{0.5f}));
     add(world, {.kind = BodyKind::Kinematic, .position = {9, 0, 0}}, Box{});
     add(world, {.position = {20, 0.5, 0}, .awake = false}, Box{});
+    add(world, {.kind = BodyKind::Static, .position = {20, 0.5, 0}}, Box{{2, 1, 2}}, {.sensor = true});
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(world.step());
     return world;
 }
@@ -40,15 +41,18 @@ World make_crowd(const std::string& structure, int steps) {
 /// A crowd, and some of its ids: lists of ids need memory, too.
 struct Scene {
     World world;
-    BodyId body, platform, sleeper;
-    ColliderId part, sleeping_part;
+    BodyId ground, body, platform, sleeper;
+    ColliderId part, sleeping_part, ground_part;
     explicit Scene(const std::string& structure) : world(make_crowd(structure, 3)) {
         const std::vector<BodyId> all = world.bodies();
+        ground = all[0];
         body = all[3];
         platform = all[11];
         sleeper = all[12];
+        ground_part = world.colliders_of(ground)[0];
         part = world.colliders_of(body)[0];
         sleeping_part = world.colliders_of(sleeper)[0];
+        EXPECT_TRUE(world.exclude_pair(platform, sleeper));
         EXPECT_TRUE(world.set_velocity(body, {1, 2, 3}, {}));
     }
 };
@@ -62,6 +66,7 @@ class OutOfMemory : public testing::TestWithParam<std::string> {};
 
 TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
     const Shape cylinder = Cylinder{0.31f, 0.2f};
+    const std::vector<ColliderShape> compound{{cylinder}, {Box{}, {.sensor = true}}, {Sphere{0.37f}}, {cylinder}};
     std::vector<std::byte> saved, foreign;
     const std::vector<Call> calls{
         {"add_body",
@@ -70,11 +75,18 @@ TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
          }},
         {"add_body with a shape", [&](Scene& s) { return s.world.add_body({}, cylinder).status(); }},
         {"add_body asleep", [&](Scene& s) { return s.world.add_body({.awake = false}, cylinder).status(); }},
+        {"add_body with many shapes", [&](Scene& s) { return s.world.add_body({}, compound).status(); }},
+        {"add_body with many shapes asleep",
+         [&](Scene& s) { return s.world.add_body({.awake = false}, compound).status(); }},
         {"add_collider", [&](Scene& s) { return s.world.add_collider(s.body, cylinder).status(); }},
         {"add_collider asleep", [&](Scene& s) { return s.world.add_collider(s.sleeper, Box{}).status(); }},
         {"remove_collider", [&](Scene& s) { return s.world.remove_collider(s.part).status(); }},
         {"remove_body", [&](Scene& s) { return s.world.remove_body(s.body).status(); }},
         {"set_settings", [&](Scene& s) { return s.world.set_settings({.sleep = false}).status(); }},
+        {"set_settings that disturb",
+         [&](Scene& s) {
+             return s.world.set_settings({.gravity = {0, -5, 0}}).status();
+         }},
         {"set_pose",
          [&](Scene& s) {
              return s.world.set_pose(s.sleeper, {{1, 5, 0}, {}}).status();
@@ -89,6 +101,9 @@ TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
          }},
         {"set_kind", [&](Scene& s) { return s.world.set_kind(s.body, BodyKind::Static).status(); }},
         {"set_kind to dynamic", [&](Scene& s) { return s.world.set_kind(s.platform, BodyKind::Dynamic).status(); }},
+        {"set_kind of what lies asleep",
+         [&](Scene& s) { return s.world.set_kind(s.sleeper, BodyKind::Kinematic).status(); }},
+        {"set_kind of the ground", [&](Scene& s) { return s.world.set_kind(s.ground, BodyKind::Kinematic).status(); }},
         {"set_mass",
          [&](Scene& s) {
              return s.world.set_mass(s.body, MassProperties{2, {}, Mat3::identity()}).status();
@@ -100,7 +115,10 @@ TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
         {"set_can_sleep", [&](Scene& s) { return s.world.set_can_sleep(s.sleeper, false).status(); }},
         {"wake", [&](Scene& s) { return s.world.wake(s.sleeper).status(); }},
         {"set_material", [&](Scene& s) { return s.world.set_material(s.sleeping_part, {.friction = 1}).status(); }},
+        {"set_material of the ground",
+         [&](Scene& s) { return s.world.set_material(s.ground_part, {.friction = 1}).status(); }},
         {"set_filter", [&](Scene& s) { return s.world.set_filter(s.sleeping_part, {.mask = 6}).status(); }},
+        {"include_pair", [&](Scene& s) { return s.world.include_pair(s.platform, s.sleeper).status(); }},
         {"exclude_pair", [&](Scene& s) { return s.world.exclude_pair(s.body, s.sleeper).status(); }},
         {"apply_force",
          [&](Scene& s) {

@@ -139,15 +139,24 @@ bool body_lists_are_right(const WorldState& s) {
         awake += t.motion_state == MotionState::Awake ? 1 : 0;
         asleep += t.motion_state == MotionState::Asleep ? 1 : 0;
     }
+    // Those that were added since the last step are awake, too.
+    std::vector<std::uint32_t> added = s.awake_added;
+    std::sort(added.begin(), added.end());
+    const auto is_in_awake = [&](std::uint32_t body) {
+        return std::binary_search(s.awake.begin(), s.awake.end(), body);
+    };
+    if (!is_ascending_below(added, bodies) || std::any_of(added.begin(), added.end(), is_in_awake)) return false;
     const auto all_are = [&](const std::vector<std::uint32_t>& list, MotionState state) {
         return std::all_of(list.begin(), list.end(),
                            [&](std::uint32_t body) { return s.bodies.traits[body].motion_state == state; });
     };
-    if (s.awake.size() != awake || s.asleep.bodies.size() != asleep || !all_are(s.awake, MotionState::Awake) ||
+    if (s.awake.size() + added.size() != awake || s.asleep.bodies.size() != asleep ||
+        !all_are(s.awake, MotionState::Awake) || !all_are(added, MotionState::Awake) ||
         !all_are(s.asleep.bodies, MotionState::Asleep))
         return false;
     const auto alive = [&](std::uint32_t body) { return s.body_ids.alive_at(body); };
     return std::all_of(s.bodies_to_wake.begin(), s.bodies_to_wake.end(), alive) &&
+           std::all_of(s.bodies_let_go.begin(), s.bodies_let_go.end(), alive) &&
            std::all_of(s.exclusions.pairs().begin(), s.exclusions.pairs().end(),
                        [&](broad::Pair pair) { return alive(pair.a) && alive(pair.b); });
 }
@@ -169,10 +178,7 @@ bool contact_is_right(const WorldState& s, const Contact& c, broad::Pair pair, b
     if (c.collider_a != pair.a || c.collider_b != pair.b || !(pair.a < pair.b) || pair.b >= s.colliders.size() ||
         c.body_a >= s.body_ids.size() || c.body_b >= s.body_ids.size() || c.count > 4)
         return false;
-    const auto is_current = [&](std::uint32_t collider, std::uint16_t generation) {
-        return s.collider_ids.alive_at(collider) && s.collider_ids.slots()[collider].generation == generation;
-    };
-    const bool current = is_current(c.collider_a, c.generation_a) && is_current(c.collider_b, c.generation_b);
+    const bool current = is_current(s, c.collider_a, c.generation_a) && is_current(s, c.collider_b, c.generation_b);
     const bool changed = ((s.changes[pair.a] | s.changes[pair.b]) & edited) != 0;
     if (!current) return changed;
     const Collider &a = s.colliders[pair.a], &b = s.colliders[pair.b];
@@ -185,19 +191,22 @@ bool contact_is_right(const WorldState& s, const Contact& c, broad::Pair pair, b
     return is_finite(c) && (c.count == 0 || (is_unit(c.normal) && is_unit(c.tangent)));
 }
 
-/// Every pair is in one list and has one contact; all other contacts are free.
+/// Every pair is in one list and has one contact; all other contacts are free. The active pairs are sorted.
 bool contacts_are_right(const WorldState& s) {
     std::vector<std::uint32_t> uses(s.contacts.size(), 0);
     if (!count(s.free_contacts, uses)) return false;
     for (const pairs::PairList* list : {&s.active, &s.resting}) {
         if (list->pairs.size() != list->values.size() || !count(list->values, uses)) return false;
         for (std::size_t i = 0; i < list->size(); ++i)
-            if ((i != 0 && !(list->pairs[i - 1] < list->pairs[i])) ||
-                !contact_is_right(s, s.contacts[list->values[i]], list->pairs[i], list == &s.active))
-                return false;
+            if (!contact_is_right(s, s.contacts[list->values[i]], list->pairs[i], list == &s.active)) return false;
     }
-    for (const broad::Pair pair : s.active.pairs)
-        if (std::binary_search(s.resting.pairs.begin(), s.resting.pairs.end(), pair)) return false;
+    if (!std::is_sorted(s.active.pairs.begin(), s.active.pairs.end())) return false;
+    std::vector<broad::Pair> pairs = s.active.pairs;
+    pairs.insert(pairs.end(), s.resting.pairs.begin(), s.resting.pairs.end());
+    std::sort(pairs.begin(), pairs.end());
+    if (std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end()) return false;
+    for (const std::uint32_t contact : s.contacts_to_check)
+        if (contact >= s.contacts.size()) return false;
     return std::all_of(uses.begin(), uses.end(), [](std::uint32_t n) { return n == 1; });
 }
 

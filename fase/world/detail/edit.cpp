@@ -23,16 +23,17 @@ Error broken_world(const char* where) {
 }
 
 void reserve_body(WorldState& state) {
-    const std::size_t slots = state.body_ids.reserve_one();
+    const std::size_t slots = state.body_ids.reserve_adds(1);
     reserve_for(state.bodies.traits, slots);
     reserve_for(state.bodies.motion, slots);
     reserve_for(state.bodies.forces, slots);
     reserve_for(state.awake, slots);
+    reserve_for(state.awake_added, slots);
     reserve_for(state.asleep, slots);
 }
 
-void reserve_collider(WorldState& state) {
-    const std::size_t slots = state.collider_ids.reserve_one();
+void reserve_colliders(WorldState& state, std::size_t count) {
+    const std::size_t slots = state.collider_ids.reserve_adds(count);
     reserve_for(state.colliders, slots);
     reserve_for(state.boxes, slots);
     reserve_for(state.changes, slots);
@@ -42,7 +43,7 @@ void reserve_collider(WorldState& state) {
 
 void mark_edited(WorldState& state, std::uint32_t collider) {
     mark_box_changed(state, collider);
-    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);  // reserve_collider()
+    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);  // reserve_colliders()
     state.changes[collider] |= edited;
 }
 
@@ -58,7 +59,7 @@ void update_boxes(WorldState& state, std::uint32_t body) {
 
 BodyEdit edit_of(const WorldState& state, std::uint32_t body) {
     const dynamics::BodyTraits& traits = state.bodies.traits[body];
-    return {traits.kind, traits.mass_given, traits.mass, traits.first_collider, no_index, nullptr, nullptr};
+    return {traits.kind, traits.mass_given, traits.mass, traits.first_collider, no_index, nullptr, nullptr, {}};
 }
 
 BodyShape shape_of(const WorldState& state, const BodyEdit& edit) {
@@ -71,10 +72,12 @@ BodyShape shape_of(const WorldState& state, const BodyEdit& edit) {
             f(shared.shape, collider.in_body, collider.density, collider.sensor, shared.outer_radius,
               shared.inner_radius);
         }
-        if (edit.added == nullptr) return;
-        const ColliderDef& def = *edit.added_def;
-        f(*edit.added, LocalPose{def.pose.position, normalized(def.pose.rotation)}, def.density, def.sensor,
-          outer_radius(*edit.added), inner_radius(*edit.added));
+        const auto add = [&](const Shape& shape, const ColliderDef& def) {
+            f(shape, LocalPose{def.pose.position, normalized(def.pose.rotation)}, def.density, def.sensor,
+              outer_radius(shape), inner_radius(shape));
+        };
+        if (edit.added != nullptr) add(*edit.added, *edit.added_def);
+        for (const ColliderShape& part : edit.parts) add(part.shape, part.def);
     };
     BodyShape out;
     out.mass = edit.mass;
@@ -169,6 +172,25 @@ std::uint32_t share_shape(WorldState& state, const Shape& shape) {
         state.shapes[index] = std::move(shared);
     }
     return index;
+}
+
+std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const ColliderShape> parts) {
+    const std::size_t slots = state.shapes.size();
+    std::vector<std::uint32_t> shared;
+    shared.reserve(parts.size());
+    try {
+        for (const ColliderShape& part : parts) shared.push_back(share_shape(state, part.shape));
+    } catch (...) {
+        // Undone backwards: a new slot is the last one again when its first user goes.
+        for (; !shared.empty(); shared.pop_back()) {
+            release_shape(state, shared.back());
+            if (shared.back() < slots || state.shapes[shared.back()].users != 0) continue;
+            state.shapes.pop_back();
+            state.free_shapes.pop_back();
+        }
+        throw;
+    }
+    return shared;
 }
 
 void release_shape(WorldState& state, std::uint32_t index) {

@@ -45,20 +45,21 @@ template <std::size_t n, class F>
 template <class V> void reserve_for(V& v, std::size_t size) {
     if (v.capacity() < size) v.reserve(std::max(size, 2 * v.capacity()));
 }
-/// Allocates for `count` calls of request_wake().
+/// Allocates for `count` calls of request_wake() or disturb().
 inline void reserve_wakes(WorldState& state, std::size_t count) {
     reserve_for(state.bodies_to_wake, state.bodies_to_wake.size() + count);
 }
-/// Allocates what one more body or collider needs; the next edits of any body then allocate nothing for it.
+/// Allocates what one more body or `count` more colliders need; the next edits of any body then allocate nothing for
+/// them.
 void reserve_body(WorldState& state);
-void reserve_collider(WorldState& state);
+void reserve_colliders(WorldState& state, std::size_t count);
 
 /// Packs locks into bits. Bits 0..2: linear x, y, z; bits 3..5: angular.
 [[nodiscard]] std::uint8_t bits_of(AxisLocks locks);
 /// Sets the motion state of a body from its kind and velocity, and moves its pairs. The next step moves its boxes and
 /// queries its pairs. Call reserve_pair_moves() before.
 void update_motion_state(WorldState& state, std::uint32_t body);
-void reserve_pair_moves(WorldState& state);
+void reserve_pair_moves(WorldState& state, std::uint32_t body);
 
 /// Recomputes the box of a collider. The next step updates it in its broad-phase structure and queries its pairs.
 void update_box(WorldState& state, std::uint32_t collider);
@@ -82,6 +83,7 @@ struct BodyEdit {
     std::uint32_t removed = no_index;  ///< a collider to leave out
     const Shape* added = nullptr;      ///< a shape to add, as `added_def` says
     const ColliderDef* added_def = nullptr;
+    std::span<const ColliderShape> parts;  ///< shapes to add
 };
 /// Returns the body as it is.
 [[nodiscard]] BodyEdit edit_of(const WorldState& state, std::uint32_t body);
@@ -97,6 +99,8 @@ void set_shape(WorldState& state, std::uint32_t body, const BodyShape& shape);
 /// Returns the index of a shared shape equal to `shape`, added when there is none, and increments its user count. When
 /// memory runs out, nothing has changed.
 [[nodiscard]] std::uint32_t share_shape(WorldState& state, const Shape& shape);
+/// The same for all shapes of a compound.
+[[nodiscard]] std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const ColliderShape> parts);
 /// Decrements the user count of a shared shape, and frees the shape at 0.
 void release_shape(WorldState& state, std::uint32_t index);
 /// Returns the hash of a shape's content, SharedShape::key.

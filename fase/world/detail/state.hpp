@@ -21,6 +21,7 @@
 #include "fase/pairs/filter.hpp"
 #include "fase/pairs/pair_list.hpp"
 #include "fase/world/body.hpp"
+#include "fase/world/detail/contact_graph.hpp"
 #include "fase/world/detail/sleepers.hpp"
 #include "fase/world/events.hpp"
 #include "fase/world/settings.hpp"
@@ -50,6 +51,12 @@ struct SharedShape {
     std::uint32_t users = 0;
     float outer_radius = 0, inner_radius = 0;
     std::uint64_t key = 0;  ///< hash of the content
+};
+
+/// A body that is struck, and the momentum of what strikes it in kg m/s.
+struct Blow {
+    std::uint32_t body = 0;
+    float momentum = 0;
 };
 
 /// Whether an island may fall asleep.
@@ -107,16 +114,21 @@ struct WorldState {
     std::vector<std::uint32_t> free_shapes;
     pairs::PairExclusions exclusions;
 
-    std::vector<std::uint32_t> awake;  ///< body indices, ascending: dynamic ones and moving kinematic ones
+    std::vector<std::uint32_t> awake;        ///< body indices, ascending: dynamic ones and moving kinematic ones
+    std::vector<std::uint32_t> awake_added;  ///< bodies added since the last step, not yet in `awake`; in any order
     Sleepers asleep;
-    pairs::PairList active;   ///< pairs with at least one awake body
-    pairs::PairList resting;  ///< pairs without an awake body
+    pairs::PairList active;   ///< pairs with at least one awake body, ascending
+    pairs::PairList resting;  ///< pairs without an awake body, in no order
     std::vector<dynamics::Contact> contacts;
     std::vector<std::uint32_t> free_contacts;
     std::vector<std::uint32_t> edited_colliders;  ///< the next step queries their pairs
     std::vector<std::uint32_t> bodies_to_wake;    ///< the next step wakes their islands before it finds pairs
-    bool removed_any = false;                     ///< pairs of removed colliders may be in the lists
-    bool query_all_awake = false;                 ///< pairs were dropped: the next step queries every awake box again
+    std::vector<std::uint32_t> bodies_let_go;     ///< sleepers whose contact ended: the stage "sleep" wakes them
+    /// Resting contacts that the next step collides once: new ones, those of edited colliders, and those of sensors
+    /// whose visitor fell asleep.
+    std::vector<std::uint32_t> contacts_to_check;
+    bool removed_any = false;      ///< pairs of removed colliders may be in the lists
+    bool query_all_awake = false;  ///< pairs were dropped: the next step queries every awake box again
 
     Events events;
     StepReport report;
@@ -125,6 +137,7 @@ struct WorldState {
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
+    ContactGraph contact_graph;
     pairs::BoxSets box_sets;  ///< fat boxes of colliders by motion state; edits reach them in the next step
     std::vector<std::uint8_t>
         set_of;                ///< by collider: 0 when its box is in no set, else 1 + the MotionState of the set
@@ -133,16 +146,23 @@ struct WorldState {
     dynamics::Solver solver;
     dynamics::DisjointSets sets;
     pairs::PairSorter sorter;
-    std::vector<float> sweep;  ///< by body: metres that a fast body may move in this step; 0 for slow bodies
+    std::vector<float> sweep;         ///< by body: metres that a fast body may move in this step; 0 for slow bodies
+    std::vector<std::uint8_t> marks;  ///< by body; all 0 between uses
+    std::vector<std::uint8_t> held;   ///< by body, valid for awake ones: a contact acted on it in this step
     std::vector<broad::Move> query_boxes;
     std::vector<broad::Pair> candidates;
     std::vector<Aabb> previous_boxes;     ///< by collider, valid for those in `moved`: the fat box before this step
     std::vector<std::uint32_t> moved;     ///< colliders that left their fat box in this step
     std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
+    std::vector<std::uint32_t> checked;   ///< resting contacts that this step collided
     std::vector<std::uint8_t> reused;     ///< by active pair: the manifold of the last step was reused
     std::vector<std::uint32_t> clamped;   ///< bodies whose speed was clamped before the step, ascending
     std::vector<std::uint32_t> scratch;
+    std::vector<std::uint32_t> woken_contacts;    ///< in update_pair_lists(): those that move to the active list
+    std::vector<broad::Pair> woken_pairs;         ///< their pairs
     std::vector<IslandActivity> island_activity;  ///< by island, for the stage "sleep"
+    std::vector<Blow> blows;                      ///< of this step
+    std::vector<std::uint32_t> kept_awake;        ///< bodies, for the stage "sleep"
     bool stepping = false;
     bool broken = false;  ///< a step ran out of memory half-way: only restore() leads on
 };
@@ -162,27 +182,97 @@ void mark_edited(WorldState& state, std::uint32_t collider);
 /// Returns the world box of a collider at its current pose, enlarged by the speculative distance and, when `sweep` is
 /// above 0, by the path of `seconds` at the body's velocity.
 [[nodiscard]] Aabb speculative_box(const WorldState& state, std::uint32_t collider, float seconds, float sweep);
+/// Moves the added bodies to the list of awake ones: at the beginning of a step.
+void merge_awake_added(WorldState& state);
+/// Removes a body from the lists of awake bodies.
+void remove_awake(WorldState& state, std::uint32_t body);
 /// Change the motion state of bodies to awake or asleep, and move their boxes and pairs. `bodies` ascending.
 void move_to_awake(WorldState& state, std::span<const std::uint32_t> bodies);
 void move_to_asleep(WorldState& state, std::span<const std::uint32_t> bodies);
 /// Updates the asleep overhang with the colliders of these bodies, which have just fallen asleep.
 void measure_asleep_overhang(const WorldState& state, std::span<const std::uint32_t> bodies);
 /// Moves the pairs of these bodies, whose motion state has changed, to the right list: active when one of the two
-/// bodies is awake, else resting. O(pairs): reads two bytes of each pair.
+/// bodies is awake, else resting. Waking costs O(own pairs + active pairs), as does falling asleep.
 void update_pair_lists(WorldState& state, std::span<const std::uint32_t> bodies);
+/// Whether a body has a velocity.
+[[nodiscard]] inline bool is_moving(const dynamics::BodyMotion& motion) {
+    return length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
+}
 /// Requests that the next step wakes the body's island before it finds pairs. Does nothing for a body that is awake or
-/// quarantined.
+/// quarantined. Edits call reserve_wakes() before.
 void request_wake(WorldState& state, std::uint32_t body);
-/// Wakes the islands of all bodies in `bodies_to_wake`.
+/// Call when something may have changed what moves a body: its rest begins anew, and it wakes. Does nothing for static
+/// bodies, and for kinematic ones without velocity. Edits call reserve_wakes() before.
+void disturb(WorldState& state, std::uint32_t body);
+/// Wakes the islands of all bodies in `bodies_to_wake`, and what they carry. Their rest begins anew.
 void wake_requested_islands(WorldState& state);
-/// Initialises a free contact for a pair and returns its index.
-[[nodiscard]] std::uint32_t add_contact(WorldState& state, broad::Pair pair);
+/// Wakes the sleeping bodies behind one that is struck with `momentum` (kg m/s), as far as the blow may move them.
+void wake_struck(WorldState& state, std::uint32_t body, float momentum);
+/// Whether the other body of a contact lies on `lower`.
+[[nodiscard]] bool carries(const WorldState& state, const dynamics::Contact& contact, std::uint32_t lower);
+/// Appends the dynamic bodies that lie on those of the list, and on these, and so on. `marks`: by body, 1 for those in
+/// the list.
+void add_carried(const WorldState& state, std::vector<std::uint32_t>& bodies, std::vector<std::uint8_t>& marks);
 
+// Contacts and their lists (world/contacts.cpp).
+/// Initialises a free contact for a pair and returns its index; the caller adds it to a list.
+[[nodiscard]] std::uint32_t add_contact(WorldState& state, broad::Pair pair);
+/// Frees a contact and reports the end of the touch. Removes it from the resting list, but not from the active one.
+void end_contact(WorldState& state, std::uint32_t contact);
+/// Sets whether two colliders touch, and reports the change. Bodies whose contact ends begin their rest
+/// anew.
+void set_touching(WorldState& state, dynamics::Contact& contact, bool touching);
+void add_resting(WorldState& state, std::uint32_t contact);
+void remove_resting(WorldState& state, std::uint32_t contact);
+/// Sorts contacts by their pairs and removes duplicates.
+void sort_by_pair(const WorldState& state, std::vector<std::uint32_t>& contacts);
+/// Call after the pair lists were replaced.
+void rebuild_contact_graph(WorldState& state);
 /// Sets friction and restitution of a contact from the materials of its colliders.
 void update_materials(WorldState& state, std::uint32_t contact);
 
 /// Brings the boxes of all colliders that were edited since the last step into the sets. The first act of a step.
 void apply_edits(WorldState& state);
+
+/// One side of a contact.
+struct ContactSide {
+    std::uint32_t collider;
+    std::uint16_t generation;
+    std::uint32_t body;
+};
+[[nodiscard]] inline std::array<ContactSide, 2> sides_of(const dynamics::Contact& c) {
+    return {{{c.collider_a, c.generation_a, c.body_a}, {c.collider_b, c.generation_b, c.body_b}}};
+}
+/// Whether a collider was not removed since `generation` was read; its slot may have a new owner by now.
+[[nodiscard]] inline bool is_current(const WorldState& state, std::uint32_t collider, std::uint16_t generation) {
+    return state.collider_ids.alive_at(collider) && state.collider_ids.slots()[collider].generation == generation;
+}
+
+/// Calls f(contact, other) for each dynamic body that touches a body, in unspecified order, once a contact. Leaves out
+/// contacts of removed colliders, which the next step ends.
+template <class F> void for_each_touched(const WorldState& state, std::uint32_t body, const F& f) {
+    for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
+        state.contact_graph.for_each_of(c, [&](std::uint32_t index) {
+            const dynamics::Contact& contact = state.contacts[index];
+            if (!contact.touching || contact.sensor) return;
+            const auto [a, b] = sides_of(contact);
+            if (!is_current(state, a.collider, a.generation) || !is_current(state, b.collider, b.generation)) return;
+            const std::uint32_t other = a.body == body ? b.body : a.body;
+            if (state.bodies.traits[other].kind == BodyKind::Dynamic) f(contact, other);
+        });
+}
+
+// Pairs of colliders that rest (world/resting_pairs.cpp).
+/// Disturbs the bodies that touch a collider that was removed, moved or changed.
+void disturb_around_edits(WorldState& state);
+/// Whether two colliders may make a contact: by kinds, sensors, filters and exclusions.
+[[nodiscard]] bool may_make_contact(const WorldState& state, broad::Pair pair);
+/// Whether a pair of a list ends: its boxes parted, or a collider was removed or changed. Reads two bytes of pairs that
+/// did not change.
+[[nodiscard]] bool has_ended(const WorldState& state, broad::Pair pair, std::uint32_t contact);
+/// Ends the resting pairs of edited colliders whose boxes parted, adds those of `found` that are not in the list, and
+/// has all of them collided in this step. `found`: ascending, none twice. O(pairs of edited colliders).
+void update_resting(WorldState& state, std::span<const broad::Pair> found);
 
 // The stages of a step, in order. Tests can call each alone.
 void refresh_boxes(WorldState& state, float seconds);
