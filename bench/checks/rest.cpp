@@ -60,18 +60,6 @@ Case friction_removed() {
         }};
 }
 
-Case asleep_in_the_air() {
-    return {"made_asleep_in_the_air",
-            {at_least("falls", "m", 4.7, 4.905)},
-            false,
-            [](Context& context) -> std::vector<double> {
-                CheckWorld world(context);
-                const BodyId box = world.add({.position = {0, 10, 0}, .awake = false}, Box{});
-                world.run(1);
-                return {10 - world.state(box).pose.position.y};
-            }};
-}
-
 enum class Support { FloorRemoved, LowerRemoved, FloorMoved, FloorFiltered, LowerMoved };
 
 /// How far the upper of two boxes falls in 1 s after its support went.
@@ -285,9 +273,9 @@ Case plank_beside_post() {
 }
 
 std::vector<Case> rest_cases() {
-    std::vector<Case> all{gravity_changed(),      friction_removed(),       asleep_in_the_air(), support_gone(false),
-                          support_gone(true),     support_gone_at_random(), platform_at_rest(),  rocking_stone(),
-                          far_from_origin(false), far_from_origin(true)};
+    std::vector<Case> all{gravity_changed(),  friction_removed(),       support_gone(false),
+                          support_gone(true), support_gone_at_random(), platform_at_rest(),
+                          rocking_stone(),    far_from_origin(false),   far_from_origin(true)};
     for (const bool wheel : {false, true})
         for (const bool half_space : {true, false}) all.push_back(rolling(wheel, half_space));
     all.push_back(plank_beside_post());

@@ -59,7 +59,7 @@ bool reuse_manifold(Contact& c, const BodyMotion& a, const BodyMotion& b, float 
     c.tangent = c.first_tangent;
     c.offset_a = c.first_offset_a;
     c.offset_b = c.first_offset_b;
-    if (const float turn = dot(n, moved_a.rotation.vector()); turn * turn > 1e-12f) {
+    if (const float turn = dot(n, moved_a.rotation.vector()); turn * turn > 1e-9f) {
         const Quat twist = moved_a.twist(n);
         c.tangent = rotate(twist, c.tangent);
         c.offset_a = rotate(twist, c.offset_a);
@@ -187,20 +187,21 @@ struct NearbyFrames {
 
 /// Updates one contact. Returns true when its manifold was reused.
 bool update_contact(WorldState& state, Contact& c) {
+    const BodyMotion& a = state.bodies.motion[c.body_a];
+    const BodyMotion& b = state.bodies.motion[c.body_b];
+    if (c.reusable && reuse_manifold(c, a, b, std::min(state.settings.contact_reuse_distance, c.reuse_distance)))
+        return true;
     const Collider& ca = state.colliders[c.collider_a];
     const Collider& cb = state.colliders[c.collider_b];
     const SharedShape& shape_a = state.shapes[ca.shape];
     const SharedShape& shape_b = state.shapes[cb.shape];
-    const BodyMotion& a = state.bodies.motion[c.body_a];
-    const BodyMotion& b = state.bodies.motion[c.body_b];
     const Vec3d exact_b_from_a = b.position - a.position;
     const Vec3 b_from_a = to_float(exact_b_from_a);
     // The smaller shape sets the scale; a half-space has no size.
     const float radius_a = shape_a.inner_radius > 0 ? shape_a.inner_radius : Aabb::infinity;
     const float radius_b = shape_b.inner_radius > 0 ? shape_b.inner_radius : Aabb::infinity;
-    const float scale = std::min(radius_a, radius_b);
-    if (c.reusable && reuse_manifold(c, a, b, std::min(state.settings.contact_reuse_distance, 0.1f * scale)))
-        return true;
+    const float scale = std::min({radius_a, radius_b, 1e6f});
+    c.reuse_distance = 0.1f * scale;
     const LocalPose pose_a = collider_pose(state, ca), pose_b = collider_pose(state, cb);
     const NearbyFrames frames(pose_a, pose_b, shape_a.shape, shape_b.shape, exact_b_from_a);
     const float margin =
@@ -242,19 +243,34 @@ void collide(WorldState& state, float) {
     check_resting(state);
     state.reused.assign(state.active.size(), 0);
     parallel_ranges(*state.tasks, state.active.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            state.reused[i] = update_contact(state, state.contacts[state.active.values[i]]) ? 1 : 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            Contact& c = state.contacts[state.active.values[i]];
+            if (!c.sensor) state.reused[i] = update_contact(state, c) ? 1 : 0;
+        }
     });
     state.touching.clear();
+    state.sensors.clear();
     StepReport& report = state.report;
     for (std::size_t i = 0; i < state.active.size(); ++i) {
         const std::uint32_t index = state.active.values[i];
         const Contact& c = state.contacts[index];
-        if (c.count == 0) continue;
+        if (c.sensor) state.sensors.push_back(index);
+        if (c.count == 0 || c.sensor) continue;
         ++report.manifolds;
         report.manifolds_reused += state.reused[i];
         report.contact_points += c.count;
-        if (!c.sensor) state.touching.push_back(index);
+        state.touching.push_back(index);
+    }
+}
+
+void collide_sensors(WorldState& state) {
+    parallel_ranges(*state.tasks, state.sensors.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) update_contact(state, state.contacts[state.sensors[i]]);
+    });
+    for (const std::uint32_t index : state.sensors) {
+        const Contact& c = state.contacts[index];
+        state.report.manifolds += c.count > 0 ? 1 : 0;
+        state.report.contact_points += c.count;
     }
 }
 

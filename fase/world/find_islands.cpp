@@ -55,8 +55,12 @@ void find_islands(WorldState& state, float seconds) {
     if (state.awake.size() != before) {
         // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
         state.touching.clear();
-        for (const std::uint32_t index : state.active.values)
-            if (state.contacts[index].count > 0 && !state.contacts[index].sensor) state.touching.push_back(index);
+        state.sensors.clear();
+        for (const std::uint32_t index : state.active.values) {
+            const Contact& c = state.contacts[index];
+            if (c.sensor) state.sensors.push_back(index);
+            if (c.count > 0 && !c.sensor) state.touching.push_back(index);
+        }
     }
 
     state.sets.reset(state.bodies.traits.size());

@@ -152,9 +152,9 @@ template <class A> void describe(A& a, Contact& c) {
     if constexpr (A::saves) all(a, c.generation_a, c.generation_b);
     all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.count, c.sensor, c.sensor_is_b, c.touching, c.reusable,
         c.pushes, c.a_rolls, c.b_rolls, c.friction, c.restitution, c.position_a, c.position_b, c.rotation_a,
-        c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b, c.first_separation, c.normal,
-        c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse, c.total_impulse,
-        c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
+        c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b, c.first_separation,
+        c.reuse_distance, c.normal, c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse,
+        c.total_impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
 }
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);

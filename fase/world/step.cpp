@@ -45,7 +45,10 @@ void step(WorldState& state, float seconds) {
         timed(state, Stage::Solve, [&] { solve(state, seconds); });
         timed(state, Stage::Finish, [&] { finish(state, seconds); });
     }
-    timed(state, Stage::Events, [&] { publish_events(state); });
+    timed(state, Stage::Events, [&] {
+        collide_sensors(state);
+        publish_events(state);
+    });
     if (seconds > 0) timed(state, Stage::Sleep, [&] { fall_asleep(state, seconds); });
     timed(state, Stage::Queries, [&] { update_query_trees(state); });
 

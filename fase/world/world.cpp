@@ -122,9 +122,17 @@ std::optional<ContactState> contact_of(const WorldState& state, std::uint32_t in
     contact.count = c.count;
     contact.sensor = c.sensor;
     const Vec3 second = cross(c.normal, c.tangent);
+    // Midway between the points of both bodies as they are now.
+    const dynamics::BodyMotion &a = state.bodies.motion[c.body_a], &b = state.bodies.motion[c.body_b];
+    const auto now = [](const dynamics::BodyMotion& body, Quat rotation_then, bool rolls, Vec3 offset, Vec3 first) {
+        return body.position +
+               to_double(rolls ? offset : rotate(normalized(body.rotation * conjugate(rotation_then)), first));
+    };
+    const Vec3d centre = (now(a, c.rotation_a, c.a_rolls, c.offset_a, c.first_offset_a) +
+                          now(b, c.rotation_b, c.b_rolls, c.offset_b, c.first_offset_b)) *
+                         0.5;
     for (std::size_t i = 0; i < c.count; ++i) {
-        contact.points[i] =
-            state.bodies.motion[c.body_a].position + to_double(c.offset_a + c.tangent * c.x[i] + second * c.y[i]);
+        contact.points[i] = centre + to_double(c.tangent * c.x[i] + second * c.y[i]);
         contact.separations[i] = c.separation[i];
         contact.impulses[i] = c.total_impulse[i];
         contact.features[i] = c.feature[i];

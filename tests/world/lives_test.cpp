@@ -55,9 +55,10 @@ public:
     }
     void edit() {
         const auto bodies = world_.bodies();
-        const BodyId body = bodies[1 + random_.below(std::max<std::uint32_t>(1, std::uint32_t(bodies.size()) - 1)) %
-                                           std::max<std::size_t>(1, bodies.size() - 1)];
         const bool only_floor = bodies.size() == 1;
+        const std::size_t others = std::max<std::size_t>(1, bodies.size() - 1);
+        const std::size_t other = random_.below(static_cast<std::uint32_t>(others));
+        const BodyId body = bodies[only_floor ? 0 : 1 + other];
         switch (only_floor ? 0 : random_.below(9)) {
             case 0:
             case 1:

@@ -28,11 +28,13 @@ struct Contact {
     Vec3 first_normal, first_tangent, first_offset_a, first_offset_b;
     float first_separation[4] = {};
 
-    // Now: at the beginning of the last step until the solver ends, then at the end of the step.
+    float reuse_distance = 0;  ///< metres that a point may move before the manifold is computed again
+
+    // At the beginning of the last step.
     Vec3 normal;
-    Vec3 tangent;             ///< unit; the second tangent is cross(normal, tangent)
-    Vec3 offset_a, offset_b;  ///< from the bodies' centres of mass to the centre of the manifold
-    float separation[4] = {};
+    Vec3 tangent;              ///< unit; the second tangent is cross(normal, tangent)
+    Vec3 offset_a, offset_b;   ///< from the bodies' centres of mass to the centre of the manifold
+    float separation[4] = {};  ///< after the last step; until the solver ends, at its beginning
 
     float x[4] = {}, y[4] = {};  ///< the points in the tangent frame around the centre
     std::uint32_t feature[4] = {};

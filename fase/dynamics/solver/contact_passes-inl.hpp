@@ -262,6 +262,15 @@ template <class V> void find_impact_lanes(ContactBlock& k, int s, const PassInpu
     select_greater(V::load(k.restitution + s), zero, found, zero).store(k.impact + s);
 }
 
+/// Replaces the separations by those after the step.
+template <class V> void finish_lanes(ContactBlock& k, int s, const PassInput& in) {
+    const Affine<V> change = separation_change(k, s, Frame<V>::load(k, s), in.bodies);
+    for (int i = 0; i < 4; ++i) {
+        const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s);
+        change.add_to(V::load(k.separation[i] + s), x, y).store(k.separation[i] + s);
+    }
+}
+
 /// Applies the impulses of the last step.
 template <class V, Sides sides> void warm_start_lanes(ContactBlock& k, int s, const PassInput& in, HubVelocities& hub) {
     Velocities<V> u;
@@ -475,11 +484,13 @@ void run_sides(Pass pass, ContactBlock* blocks, std::size_t count, const PassInp
         for (int s = 0; s < block_lanes; s += V::lanes) switch (pass) {
                 case Pass::Prepare: prepare_lanes<V, sides>(k, s, in); break;
                 case Pass::FindImpacts: find_impact_lanes<V>(k, s, in); break;
+                case Pass::Finish: finish_lanes<V>(k, s, in); break;
                 case Pass::WarmStart: warm_start_lanes<V, sides>(k, s, in, hub); break;
                 case Pass::Biased: solve_lanes<V, sides, true>(k, s, in, hub); break;
                 case Pass::Relax: solve_lanes<V, sides, false>(k, s, in, hub); break;
             }
-        if (sides == Sides::Hub && pass != Pass::Prepare && pass != Pass::FindImpacts) merge_hub(k, hub, in.bodies);
+        const bool moves = pass == Pass::WarmStart || pass == Pass::Biased || pass == Pass::Relax;
+        if (sides == Sides::Hub && moves) merge_hub(k, hub, in.bodies);
     }
 }
 template <class V>

@@ -12,6 +12,7 @@ enum class Pass {
     WarmStart,    ///< applies the impulses of the last step
     FindImpacts,  ///< marks the contacts that hit with restitution in this sub-step
     Biased,       ///< soft contacts, with push-out of overlap and friction
+    Finish,       ///< brings the separations to the end of the step
     Relax,        ///< hard contacts without push-out, with friction
 };
 

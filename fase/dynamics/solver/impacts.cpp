@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fase/dynamics/solver/rows.hpp"
 
@@ -27,10 +28,14 @@ void apply(const ImpactInput& in, std::uint32_t row, Vec3 impulse, Vec3 offset) 
     write(body.velocity, read(body.velocity) + multiply(inverse_mass(in, row), impulse));
     write(body.spin, read(body.spin) + times(in.masses[row].inertia, cross(offset, impulse)));
 }
-/// Does the body react to impulses? Rows of static and kinematic bodies are shared or must keep their velocity.
+/// Whether the body reacts to impulses. Rows of static and kinematic bodies are shared or must keep their velocity.
 bool reacts(const ImpactInput& in, std::uint32_t row) { return in.motions[row].is_dynamic; }
 
 }  // namespace
+
+float Impacts::normal_speed(const ImpactInput& in, const Hit& hit, const Point& point) {
+    return dot(hit.normal, velocity_at(in.bodies[hit.b], point.b) - velocity_at(in.bodies[hit.a], point.a));
+}
 
 bool Impacts::add_points(Hit& hit, const ImpactInput& in) const {
     const ContactBlock& k = *hit.block;
@@ -111,6 +116,62 @@ void Impacts::gather(std::span<Colour> colours, const ImpactInput& in) {
                    touched_.end());
 }
 
+void Impacts::push(const ImpactInput& in, const Hit& hit, Vec3 impulse, Vec3 a, Vec3 b) {
+    if (reacts(in, hit.a)) apply(in, hit.a, -impulse, a);
+    if (reacts(in, hit.b)) apply(in, hit.b, impulse, b);
+}
+
+void Impacts::solve_common(const ImpactInput& in, Hit& hit) {
+    float mean = 0, mass = 0;
+    Vec3 a, b;
+    for (int i = 0; i < hit.count; ++i) {
+        const Point& p = hit.points[i];
+        mean += p.target - normal_speed(in, hit, p);
+        a += p.a;
+        b += p.b;
+    }
+    const float share = 1 / static_cast<float>(hit.count);
+    a *= share;
+    b *= share;
+    for (const auto& [row, offset] : {std::pair{hit.a, a}, std::pair{hit.b, b}}) {
+        if (!reacts(in, row)) continue;
+        const Vec3 lever = cross(offset, hit.normal);
+        mass += dot(hit.normal, multiply(inverse_mass(in, row), hit.normal)) +
+                dot(lever, times(in.masses[row].inertia, lever));
+    }
+    const float impulse = mass > 0 ? std::max(mean * share / mass, 0.0f) : 0.0f;
+    for (int i = 0; i < hit.count; ++i) hit.points[i].impulse = impulse * share;
+    push(in, hit, hit.normal * impulse, a, b);
+}
+
+float Impacts::solve_point(const ImpactInput& in, const Hit& hit, Point& point) {
+    const float next = std::max(point.impulse - point.mass * (normal_speed(in, hit, point) - point.target), 0.0f);
+    const float change = next - point.impulse;
+    point.impulse = next;
+    push(in, hit, hit.normal * change, point.a, point.b);
+    return std::abs(change) / point.mass;
+}
+
+void Impacts::solve_friction(const ImpactInput& in, Hit& hit) {
+    float load = 0;
+    for (int i = 0; i < hit.count; ++i) load += hit.points[i].impulse;
+    const Vec3 slip = velocity_at(in.bodies[hit.b], hit.centre_b) - velocity_at(in.bodies[hit.a], hit.centre_a);
+    const float u1 = dot(slip, hit.tangent), u2 = dot(slip, hit.second);
+    float next1 = hit.friction_impulse[0] - (hit.friction_mass[0] * u1 + hit.friction_mass[1] * u2);
+    float next2 = hit.friction_impulse[1] - (hit.friction_mass[1] * u1 + hit.friction_mass[2] * u2);
+    const float limit = hit.friction * load, squared = next1 * next1 + next2 * next2;
+    if (squared > limit * limit) {
+        const float shrink = limit / std::sqrt(squared);
+        next1 *= shrink;
+        next2 *= shrink;
+    }
+    const Vec3 impulse =
+        hit.tangent * (next1 - hit.friction_impulse[0]) + hit.second * (next2 - hit.friction_impulse[1]);
+    hit.friction_impulse[0] = next1;
+    hit.friction_impulse[1] = next2;
+    push(in, hit, impulse, hit.centre_a, hit.centre_b);
+}
+
 void Impacts::iterate(const ImpactInput& in, bool with_friction) {
     float fastest = 0;
     for (Hit& hit : hits_) {
@@ -120,73 +181,19 @@ void Impacts::iterate(const ImpactInput& in, bool with_friction) {
             fastest = std::max(fastest, hit.points[i].approach);
         }
     }
-    const auto push = [&](const Hit& hit, Vec3 impulse, Vec3 a, Vec3 b) {
-        if (reacts(in, hit.a)) apply(in, hit.a, -impulse, a);
-        if (reacts(in, hit.b)) apply(in, hit.b, impulse, b);
-    };
-    /// Returns by how much the point's velocity misses its target, m/s.
-    const auto solve_point = [&](const Hit& hit, Point& point) {
-        const float speed =
-            dot(hit.normal, velocity_at(in.bodies[hit.b], point.b) - velocity_at(in.bodies[hit.a], point.a));
-        const float next = std::max(point.impulse - point.mass * (speed - point.target), 0.0f);
-        const float change = next - point.impulse;
-        point.impulse = next;
-        push(hit, hit.normal * change, point.a, point.b);
-        return std::abs(change) / point.mass;
-    };
     const int sweeps = hits_.size() <= few_hits ? sweeps_of_few : sweeps_of_many;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         float change = 0;
         for (Hit& hit : hits_) {
-            if (sweep == 0) {
-                // A common impulse first: an even load stays even.
-                float mean = 0, mass = 0;
-                Vec3 a, b;
-                for (int i = 0; i < hit.count; ++i) {
-                    const Point& p = hit.points[i];
-                    mean += p.target -
-                            dot(hit.normal, velocity_at(in.bodies[hit.b], p.b) - velocity_at(in.bodies[hit.a], p.a));
-                    a += p.a;
-                    b += p.b;
-                }
-                const float share = 1 / static_cast<float>(hit.count);
-                a *= share;
-                b *= share;
-                const Vec3 ja = cross(a, hit.normal), jb = cross(b, hit.normal);
-                if (reacts(in, hit.a))
-                    mass += dot(hit.normal, multiply(inverse_mass(in, hit.a), hit.normal)) +
-                            dot(ja, times(in.masses[hit.a].inertia, ja));
-                mass += dot(hit.normal, multiply(inverse_mass(in, hit.b), hit.normal)) +
-                        dot(jb, times(in.masses[hit.b].inertia, jb));
-                const float impulse = mass > 0 ? std::max(mean * share / mass, 0.0f) : 0.0f;
-                for (int i = 0; i < hit.count; ++i) hit.points[i].impulse = impulse * share;
-                push(hit, hit.normal * impulse, a, b);
-            }
+            if (sweep == 0) solve_common(in, hit);
             const int repeats = hit.count > 1 ? sweeps_of_manifold : 1;
             for (int r = 0; r < repeats; ++r) {
                 float here = 0;
-                for (int i = 0; i < hit.count; ++i) here = std::max(here, solve_point(hit, hit.points[i]));
+                for (int i = 0; i < hit.count; ++i) here = std::max(here, solve_point(in, hit, hit.points[i]));
                 if (r == 0) change = std::max(change, here);
                 if (!(here > converged * fastest)) break;
             }
-            if (!with_friction || !(hit.friction > 0)) continue;
-            float load = 0;
-            for (int i = 0; i < hit.count; ++i) load += hit.points[i].impulse;
-            const Vec3 slip = velocity_at(in.bodies[hit.b], hit.centre_b) - velocity_at(in.bodies[hit.a], hit.centre_a);
-            const float u1 = dot(slip, hit.tangent), u2 = dot(slip, hit.second);
-            float next1 = hit.friction_impulse[0] - (hit.friction_mass[0] * u1 + hit.friction_mass[1] * u2);
-            float next2 = hit.friction_impulse[1] - (hit.friction_mass[1] * u1 + hit.friction_mass[2] * u2);
-            const float limit = hit.friction * load, squared = next1 * next1 + next2 * next2;
-            if (squared > limit * limit) {
-                const float shrink = limit / std::sqrt(squared);
-                next1 *= shrink;
-                next2 *= shrink;
-            }
-            const Vec3 impulse =
-                hit.tangent * (next1 - hit.friction_impulse[0]) + hit.second * (next2 - hit.friction_impulse[1]);
-            hit.friction_impulse[0] = next1;
-            hit.friction_impulse[1] = next2;
-            push(hit, impulse, hit.centre_a, hit.centre_b);
+            if (with_friction && hit.friction > 0) solve_friction(in, hit);
         }
         // The first sweep starts from common impulses, after which no point misses its target by itself.
         if (sweep > 0 && !(change > converged * fastest)) break;

@@ -71,6 +71,14 @@ private:
     };
     void gather(std::span<Colour> colours, const ImpactInput& input);
     bool add_points(Hit& hit, const ImpactInput& input) const;
+    /// Returns the speed along the normal, positive when the bodies separate.
+    static float normal_speed(const ImpactInput& input, const Hit& hit, const Point& point);
+    static void push(const ImpactInput& input, const Hit& hit, Vec3 impulse, Vec3 a, Vec3 b);
+    /// Gives all points of a manifold equal impulses: an even load stays even.
+    static void solve_common(const ImpactInput& input, Hit& hit);
+    /// Returns by how much the speed of the point missed its target, m/s.
+    static float solve_point(const ImpactInput& input, const Hit& hit, Point& point);
+    static void solve_friction(const ImpactInput& input, Hit& hit);
     void iterate(const ImpactInput& input, bool with_friction);
     std::vector<Touched>::iterator find_touched(std::uint32_t row);
     [[nodiscard]] double added_energy(const ImpactInput& input);

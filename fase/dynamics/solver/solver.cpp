@@ -2,8 +2,10 @@
 #include "fase/dynamics/solver/solver.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "fase/dynamics/solver/rows.hpp"
 
@@ -126,6 +128,31 @@ void Solver::load_bodies(const Bodies& bodies, std::span<const std::uint32_t> aw
     });
 }
 
+void Solver::sort_top_down(bool any_stack) {
+    top_down_.clear();
+    double top = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t row = 1; row + 1 < rows_.size(); ++row)
+        if (carriers_[row].first != carriers_[row].end) {
+            top_down_.push_back(row);
+            top = std::max(top, carriers_[row].height);
+        }
+    if (!any_stack) return;
+    // Radix sort by depth below the highest: the bits of floats of 0 or more are in their order. Rows of equal depth
+    // stay in order.
+    std::vector<std::uint32_t>& keys = sort_keys_;
+    keys.resize(rows_.size());
+    for (const std::uint32_t row : top_down_)
+        keys[row] = std::bit_cast<std::uint32_t>(static_cast<float>(top - carriers_[row].height));
+    sort_scratch_.resize(top_down_.size());
+    for (int shift = 0; shift < 32; shift += 11) {
+        std::array<std::uint32_t, 2049> begin{};
+        for (const std::uint32_t row : top_down_) ++begin[((keys[row] >> shift) & 2047) + 1];
+        for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+        for (const std::uint32_t row : top_down_) sort_scratch_[begin[(keys[row] >> shift) & 2047]++] = row;
+        std::swap(top_down_, sort_scratch_);
+    }
+}
+
 void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
                               const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks) {
     known_loads_.assign(active.size(), 0);
@@ -136,7 +163,7 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
     carriers_.assign(rows_.size(), {});
     for (std::size_t i = 0; i < loaded_.size(); ++i) {
         Carrier& carrier = carriers_[i + 1];
-        carrier.height = -dot(bodies.motion[loaded_[i]].position, up_exact);
+        carrier.height = dot(bodies.motion[loaded_[i]].position, up_exact);
         const float inverse_mass = bodies.traits[loaded_[i]].inverse_mass;
         if (inverse_mass > 0) carrier.load = std::max(-dot(motions_[i + 1].velocity_step, up) / inverse_mass, 0.0f);
     }
@@ -168,11 +195,8 @@ void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const
     contacts_below_.resize(active.size());
     for (std::size_t i = 0; i < active.size(); ++i)
         contacts_below_[carriers_[supports_[i].upper].end++] = static_cast<std::uint32_t>(i);
-    top_down_.clear();
-    for (std::uint32_t row = 1; row + 1 < rows_.size(); ++row)
-        if (carriers_[row].first != carriers_[row].end) top_down_.push_back({carriers_[row].height, row});
-    if (any_stack) std::sort(top_down_.begin(), top_down_.end());
-    for (const auto& [height, row] : top_down_) {
+    sort_top_down(any_stack);
+    for (const std::uint32_t row : top_down_) {
         const Carrier& carrier = carriers_[row];
         for (std::uint32_t k = carrier.first; k < carrier.end; ++k) {
             const Support& support = supports_[contacts_below_[k]];
@@ -201,7 +225,7 @@ void Solver::fill_lane(ContactBlock& block, int lane, const Slot& slot, const Co
     const Vec3 spin_a = bodies.motion[body_a].angular_velocity, spin_b = bodies.motion[body_b].angular_velocity;
     const Vec3 spin = length_squared(spin_a) < length_squared(spin_b) ? spin_a : spin_b;
     const Vec3 half = normal * (dot(normal, spin) * 0.25f * settings.time_step);
-    if (length_squared(half) > 1e-12f) {
+    if (length_squared(half) > 1e-9f) {  // below, the drift is far below a micrometre per step
         const Quat ahead = normalized(Quat{half.x, half.y, half.z, 1});
         tangent = rotate(ahead, tangent);
         offset_a = rotate(ahead, offset_a);
@@ -352,6 +376,7 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
         impacts_.correct_paths(rows_, motions_);
         run_passes(Pass::Relax, settings, tasks);
     }
+    run_passes(Pass::Finish, settings, tasks);
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
 }
 
@@ -368,8 +393,6 @@ void Solver::solve_impacts(const SolverSettings& settings, float sub_step, TaskR
 void Solver::store_contact(Contact& c, const ContactBlock& block, int lane, const Slot& slot, const Bodies& bodies,
                            const SolverSettings& settings) const {
     const float sign = slot.flipped ? -1.0f : 1.0f;
-    const SolverBody& a = rows_[row_of_body_[c.body_a]];
-    const SolverBody& b = rows_[row_of_body_[c.body_b]];
     c.friction_impulse[0] = block.friction_impulse[0][lane];
     c.friction_impulse[1] = block.friction_impulse[1][lane] * sign;
     c.twist_impulse = block.twist_impulse[lane];
@@ -384,11 +407,10 @@ void Solver::store_contact(Contact& c, const ContactBlock& block, int lane, cons
         c.approach = std::max(c.approach, block.approach[i][lane]);
         if (c.total_impulse[i] > c.total_impulse[hardest]) hardest = i;
     }
-    const Vec3 second = cross(c.normal, c.tangent), moved_a = read(a.moved), moved_b = read(b.moved);
     if (c.pushes && c.approach > settings.restitution_threshold) {
         // The point on the surface of the smaller body, moved with it until the touch. Bodies keep their velocity of
         // the beginning of the step until then.
-        const Vec3 shift = c.tangent * c.x[hardest] + second * c.y[hardest];
+        const Vec3 shift = c.tangent * c.x[hardest] + cross(c.normal, c.tangent) * c.y[hardest];
         const float half_gap = 0.5f * c.separation[hardest];
         const float speed = std::max(block.approach[hardest][lane], 1e-6f);
         const float seconds = std::clamp(c.separation[hardest] / speed, -settings.time_step, settings.time_step);
@@ -398,23 +420,13 @@ void Solver::store_contact(Contact& c, const ContactBlock& block, int lane, cons
         const Vec3 on_a = c.offset_a + shift - c.normal * half_gap + ma.linear_velocity * seconds;
         const Vec3 on_b = c.offset_b + shift + c.normal * half_gap + mb.linear_velocity * seconds + b_from_a;
         const bool a_is_smaller = bodies.traits[c.body_a].reach < bodies.traits[c.body_b].reach;
-        c.hit_offset_a = (a_is_smaller ? on_a : on_b) - moved_a;
+        c.hit_offset_a = (a_is_smaller ? on_a : on_b) - read(rows_[row_of_body_[c.body_a]].moved);
     }
-    // From here on the contact describes the end of the step.
-    const Vec3 turn_a = inverse_rotation_delta(read(a.rotated), c.a_rolls ? 0.0f : 1.0f, c.normal);
-    const Vec3 turn_b = inverse_rotation_delta(read(b.rotated), c.b_rolls ? 0.0f : 1.0f, c.normal);
-    const float centre = dot(c.normal, moved_b - moved_a) + dot(turn_b, c.offset_b) - dot(turn_a, c.offset_a);
     c.nearest = absent_separation;
     for (int i = 0; i < c.count; ++i) {
-        c.separation[i] += centre + c.x[i] * dot(turn_b - turn_a, c.tangent) + c.y[i] * dot(turn_b - turn_a, second);
+        c.separation[i] = block.separation[i][lane];
         c.nearest = std::min(c.nearest, c.separation[i]);
     }
-    // The point midway between those of a and b.
-    const Vec3 at_a = c.a_rolls ? c.offset_a : c.offset_a + cross(read(a.rotated), c.offset_a);
-    const Vec3 at_b = c.b_rolls ? c.offset_b : c.offset_b + cross(read(b.rotated), c.offset_b);
-    const Vec3 b_from_a = c.offset_a - c.offset_b + moved_b - moved_a;
-    c.offset_a = (at_a + at_b + b_from_a) * 0.5f;
-    c.offset_b = c.offset_a - b_from_a;
 }
 
 void Solver::store_contacts(std::span<Contact> contacts, const Bodies& bodies, const SolverSettings& settings,

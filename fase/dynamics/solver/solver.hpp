@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "fase/core/tasks.hpp"
@@ -71,7 +70,7 @@ private:
     };
     /// A body that passes its load on to what it lies on.
     struct Carrier {
-        double height = 0;  // of the centre of mass, negated: the highest sorts first
+        double height = 0;  // of the centre of mass
         float load = 0;     // N s per sub-step: its own weight and what lies on it
         float cosines = 0;  // sum over the contacts below
         std::uint32_t first = 0, end = 0;
@@ -87,6 +86,8 @@ private:
     /// Guendelman, Bridson, Fedkiw 2003, Nonconvex rigid bodies with stacking (shock propagation; there for masses).
     void find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
                           const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks);
+    /// Lists the rows that lie on contacts, the highest first when any lies on another.
+    void sort_top_down(bool any_stack);
     void fill_lane(ContactBlock& block, int lane, const Slot& slot, const Contact& contact, float load,
                    const Bodies& bodies, const SolverSettings& settings) const;
     void store_contact(Contact& contact, const ContactBlock& block, int lane, const Slot& slot, const Bodies& bodies,
@@ -109,7 +110,7 @@ private:
     // Scratch of find_known_loads():
     std::vector<Support> supports_;  // by active contact
     std::vector<std::uint32_t> contacts_below_;
-    std::vector<std::pair<double, std::uint32_t>> top_down_;  // negated height, row
+    std::vector<std::uint32_t> top_down_, sort_keys_, sort_scratch_;  // rows; keys by row
     SolverCounts counts_;
 };
 

@@ -162,7 +162,7 @@ bool body_lists_are_right(const WorldState& s) {
 }
 
 bool is_finite(const Contact& c) {
-    float sum = c.friction + c.restitution + c.twist_impulse + c.nearest + c.approach;
+    float sum = c.friction + c.restitution + c.twist_impulse + c.nearest + c.approach + c.reuse_distance;
     for (const Vec3 v : {c.normal, c.tangent, c.offset_a, c.offset_b, c.first_normal, c.first_tangent, c.first_offset_a,
                          c.first_offset_b, c.hit_offset_a, to_float(c.position_a), to_float(c.position_b)})
         sum += v.x + v.y + v.z;

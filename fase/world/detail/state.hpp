@@ -154,6 +154,7 @@ struct WorldState {
     std::vector<Aabb> previous_boxes;     ///< by collider, valid for those in `moved`: the fat box before this step
     std::vector<std::uint32_t> moved;     ///< colliders that left their fat box in this step
     std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
+    std::vector<std::uint32_t> sensors;   ///< active contacts of sensors, which are collided after the bodies moved
     std::vector<std::uint32_t> checked;   ///< resting contacts that this step collided
     std::vector<std::uint8_t> reused;     ///< by active pair: the manifold of the last step was reused
     std::vector<std::uint32_t> clamped;   ///< bodies whose speed was clamped before the step, ascending
@@ -281,6 +282,8 @@ void collide(WorldState& state, float seconds);
 void find_islands(WorldState& state, float seconds);
 void solve(WorldState& state, float seconds);
 void finish(WorldState& state, float seconds);
+/// Collides sensors where the bodies are after they moved, so that events tell the end of the step.
+void collide_sensors(WorldState& state);
 void publish_events(WorldState& state);
 void fall_asleep(WorldState& state, float seconds);
 /// Updates the query trees when they exist, and frees them when they are unused.
