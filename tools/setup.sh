@@ -28,14 +28,17 @@ is_there() {
 missing_packages() {
     local package purpose kind name least
     while read -r package purpose kind name least; do
-        case " $* " in *" $purpose "*) ;; *) continue ;; esac
+        case " $* " in *" ${purpose%\?} "*) ;; *) continue ;; esac
         is_there "$kind" "$name" "$least" || say "$package"
     done < <(sed 's/#.*//; /^[[:space:]]*$/d' packages.txt)
 }
 
+# is_optional PACKAGE: may it be left out where the system has no such package?
+is_optional() { grep -qE "^$1[[:space:]]+[a-z]+\?[[:space:]]" packages.txt; }
+
 # install_packages PURPOSE…: installs what is missing with apt; elsewhere names it and stops.
 install_packages() {
-    local missing as_root=()
+    local missing wanted=() package as_root=()
     mapfile -t missing < <(missing_packages "$@")
     [ ${#missing[@]} -gt 0 ] || return 0
     command -v apt-get >/dev/null 2>&1 || stop "missing on this system (Debian's names): ${missing[*]}"
@@ -48,13 +51,19 @@ install_packages() {
     mkdir -p build
     if ! {
         "${as_root[@]}" apt-get update -q || true
-        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+        for package in "${missing[@]}"; do
+            if ! is_optional "$package" || apt-cache show "$package" >/dev/null 2>&1; then wanted+=("$package"); fi
+        done
+        [ ${#wanted[@]} -eq 0 ] ||
+            "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${wanted[@]}"
     } </dev/null >build/packages.log 2>&1; then
         tail -n 15 build/packages.log >&2
-        stop "apt-get could not install ${missing[*]}; the whole log: build/packages.log"
+        stop "apt-get could not install ${wanted[*]}; the whole log: build/packages.log"
     fi
     mapfile -t missing < <(missing_packages "$@")
-    [ ${#missing[@]} -eq 0 ] || stop "installed, but still not usable: ${missing[*]}"
+    wanted=()
+    for package in "${missing[@]}"; do is_optional "$package" || wanted+=("$package"); done
+    [ ${#wanted[@]} -eq 0 ] || stop "installed, but still not usable: ${wanted[*]}"
 }
 
 # configure PRESET [OPTION=VALUE…]: makes the build folder, or changes these options of one that is there.

@@ -14,15 +14,11 @@ namespace {
 dynamics::SolverSettings solver_settings(const WorldState& state, float seconds) {
     const Settings& settings = state.settings;
     const float sub_step = seconds / static_cast<float>(settings.sub_steps);
-    return {settings.gravity,
-            seconds,
-            settings.sub_steps,
-            state.last_sub_step > 0 ? sub_step / state.last_sub_step : 1,
-            settings.contact_frequency,
-            settings.contact_damping_ratio,
-            settings.push_out_speed,
-            settings.restitution_threshold,
-            {settings.max_linear_speed, settings.max_angular_speed}};
+    return {settings.gravity,           seconds,
+            settings.sub_steps,         state.last_sub_step > 0 ? sub_step / state.last_sub_step : 1,
+            settings.contact_frequency, settings.contact_damping_ratio,
+            settings.push_out_speed,    settings.restitution_threshold,
+            settings.linear_slop,       {settings.max_linear_speed, settings.max_angular_speed}};
 }
 
 bool is_valid(const BodyMotion& motion) {

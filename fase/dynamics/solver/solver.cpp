@@ -2,10 +2,8 @@
 #include "fase/dynamics/solver/solver.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "fase/dynamics/solver/rows.hpp"
 
@@ -23,8 +21,6 @@ constexpr float known_part = 0.96f;
 // The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
 // at an eighth, pyramids vibrate.
 constexpr float max_frequency_share = 0.1f;
-constexpr float min_upward = 0.3f;         // cosine to the vertical: steeper contacts are taken to carry nothing
-constexpr float max_resting_gap = 0.005f;  // m
 
 /// Computes the world inverse inertia R diag(inverse moments) Rᵀ of a body. A locked axis does not rotate: its angular
 /// momentum is left out by a Schur complement, so the other axes respond as if held there.
@@ -128,85 +124,6 @@ void Solver::load_bodies(const Bodies& bodies, std::span<const std::uint32_t> aw
     });
 }
 
-void Solver::sort_top_down(bool any_stack) {
-    top_down_.clear();
-    double top = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t row = 1; row + 1 < rows_.size(); ++row)
-        if (carriers_[row].first != carriers_[row].end) {
-            top_down_.push_back(row);
-            top = std::max(top, carriers_[row].height);
-        }
-    if (!any_stack) return;
-    // Radix sort by depth below the highest: the bits of floats of 0 or more are in their order. Rows of equal depth
-    // stay in order.
-    std::vector<std::uint32_t>& keys = sort_keys_;
-    keys.resize(rows_.size());
-    for (const std::uint32_t row : top_down_)
-        keys[row] = std::bit_cast<std::uint32_t>(static_cast<float>(top - carriers_[row].height));
-    sort_scratch_.resize(top_down_.size());
-    for (int shift = 0; shift < 32; shift += 11) {
-        std::array<std::uint32_t, 2049> begin{};
-        for (const std::uint32_t row : top_down_) ++begin[((keys[row] >> shift) & 2047) + 1];
-        for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-        for (const std::uint32_t row : top_down_) sort_scratch_[begin[(keys[row] >> shift) & 2047]++] = row;
-        std::swap(top_down_, sort_scratch_);
-    }
-}
-
-void Solver::find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
-                              const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks) {
-    known_loads_.assign(active.size(), 0);
-    const float gravity = length(settings.gravity);
-    if (!(gravity > 0)) return;
-    const Vec3 up = settings.gravity * (-1 / gravity);
-    const Vec3d up_exact = to_double(up);
-    carriers_.assign(rows_.size(), {});
-    for (std::size_t i = 0; i < loaded_.size(); ++i) {
-        Carrier& carrier = carriers_[i + 1];
-        carrier.height = dot(bodies.motion[loaded_[i]].position, up_exact);
-        const float inverse_mass = bodies.traits[loaded_[i]].inverse_mass;
-        if (inverse_mass > 0) carrier.load = std::max(-dot(motions_[i + 1].velocity_step, up) / inverse_mass, 0.0f);
-    }
-    // Dynamic bodies that lie on their contacts; row 0 takes the contacts that carry nothing.
-    supports_.resize(active.size());
-    parallel_ranges(tasks, active.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Contact& c = contacts[active[i]];
-            const float cosine = dot(c.normal, up);
-            Support& support = supports_[i];
-            support = {std::abs(cosine), 0, row_of_body_[cosine > 0 ? c.body_a : c.body_b]};
-            if (!(c.nearest < max_resting_gap && support.cosine > min_upward)) continue;
-            const std::uint32_t row = row_of_body_[cosine > 0 ? c.body_b : c.body_a];
-            if (motions_[row].is_dynamic) support.upper = row;
-        }
-    });
-    bool any_stack = false;
-    for (const Support& support : supports_) {
-        carriers_[support.upper].cosines += support.cosine;
-        ++carriers_[support.upper].end;
-        any_stack |= support.upper != 0 && motions_[support.lower].is_dynamic;
-    }
-    std::uint32_t sum = 0;
-    for (Carrier& carrier : carriers_) {
-        carrier.first = sum;
-        sum += carrier.end;
-        carrier.end = carrier.first;
-    }
-    contacts_below_.resize(active.size());
-    for (std::size_t i = 0; i < active.size(); ++i)
-        contacts_below_[carriers_[supports_[i].upper].end++] = static_cast<std::uint32_t>(i);
-    sort_top_down(any_stack);
-    for (const std::uint32_t row : top_down_) {
-        const Carrier& carrier = carriers_[row];
-        for (std::uint32_t k = carrier.first; k < carrier.end; ++k) {
-            const Support& support = supports_[contacts_below_[k]];
-            const float down = carrier.load * (support.cosine / carrier.cosines);
-            known_loads_[contacts_below_[k]] = down * support.cosine;  // friction may bear the rest: never too much
-            carriers_[support.lower].load += down;
-        }
-    }
-}
-
 void Solver::fill_lane(ContactBlock& block, int lane, const Slot& slot, const Contact& c, float load,
                        const Bodies& bodies, const SolverSettings& settings) const {
     // In the block, b is always dynamic. Swapping a and b negates the normal and the second tangent, and with it y and
@@ -269,7 +186,8 @@ void Solver::fill_lane(ContactBlock& block, int lane, const Slot& slot, const Co
 
 void Solver::load_contacts(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
                            const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks) {
-    find_known_loads(contacts, active, bodies, settings, tasks);
+    const std::span<const float> loads = known_loads_.find(
+        {contacts, active, bodies, loaded_, row_of_body_, motions_, settings.gravity, settings.resting_gap}, tasks);
     colouring_.reset(rows_.size());
     for (Colour& colour : colours_) {
         colour.contacts = 0;
@@ -324,7 +242,7 @@ void Solver::load_contacts(std::span<const Contact> contacts, std::span<const st
         for (std::size_t i = begin; i < end; ++i) {
             const Slot& slot = slots_[i];
             fill_lane(colours_[slot.colour].blocks[slot.index / block_lanes],
-                      static_cast<int>(slot.index % block_lanes), slot, contacts[slot.contact], known_loads_[i], bodies,
+                      static_cast<int>(slot.index % block_lanes), slot, contacts[slot.contact], loads[i], bodies,
                       settings);
         }
     });

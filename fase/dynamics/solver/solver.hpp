@@ -13,6 +13,7 @@
 #include "fase/dynamics/solver/hub_blocks.hpp"
 #include "fase/dynamics/solver/impacts.hpp"
 #include "fase/dynamics/solver/integrate.hpp"
+#include "fase/dynamics/solver/known_loads.hpp"
 #include "fase/dynamics/solver/solver_types.hpp"
 
 namespace fase::dynamics {
@@ -27,6 +28,7 @@ struct SolverSettings {
     float contact_damping_ratio = 10;
     float push_out_speed = 3;
     float restitution_threshold = 0.1f;
+    float resting_gap = 0.005f;  ///< m; contacts that are closer carry a load
     SpeedLimits speed_limits;
 };
 
@@ -68,26 +70,6 @@ private:
         bool flipped;         ///< the contact's b is static or kinematic: a and b are swapped in the block
         std::uint32_t index;  ///< among the contacts of its colour
     };
-    /// A body that passes its load on to what it lies on.
-    struct Carrier {
-        double height = 0;  // of the centre of mass
-        float load = 0;     // N s per sub-step: its own weight and what lies on it
-        float cosines = 0;  // sum over the contacts below
-        std::uint32_t first = 0, end = 0;
-    };
-    /// The bodies of a contact as known loads pass it: from the row `upper` (0: it carries nothing) to `lower`.
-    struct Support {
-        float cosine;  // of the angle between the normal and the vertical
-        std::uint32_t upper, lower;
-    };
-    /// Computes the impulse per sub-step along the normal that each contact bears when all bodies rest: from the
-    /// highest body down, the weight of a body and what lies on it is shared between the contacts below. Without it, a
-    /// soft contact learns its load only by giving way. It depends on the present step alone. Source of the order:
-    /// Guendelman, Bridson, Fedkiw 2003, Nonconvex rigid bodies with stacking (shock propagation; there for masses).
-    void find_known_loads(std::span<const Contact> contacts, std::span<const std::uint32_t> active,
-                          const Bodies& bodies, const SolverSettings& settings, TaskRunner& tasks);
-    /// Lists the rows that lie on contacts, the highest first when any lies on another.
-    void sort_top_down(bool any_stack);
     void fill_lane(ContactBlock& block, int lane, const Slot& slot, const Contact& contact, float load,
                    const Bodies& bodies, const SolverSettings& settings) const;
     void store_contact(Contact& contact, const ContactBlock& block, int lane, const Slot& slot, const Bodies& bodies,
@@ -105,12 +87,7 @@ private:
     std::vector<Slot> slots_;
     std::array<HubBlocks, 2> hubs_;  // of two-sided contacts, and of those with static bodies
     Impacts impacts_;
-    std::vector<float> known_loads_;  // by active contact
-    std::vector<Carrier> carriers_;   // by row
-    // Scratch of find_known_loads():
-    std::vector<Support> supports_;  // by active contact
-    std::vector<std::uint32_t> contacts_below_;
-    std::vector<std::uint32_t> top_down_, sort_keys_, sort_scratch_;  // rows; keys by row
+    KnownLoads known_loads_;
     SolverCounts counts_;
 };
 
