@@ -51,7 +51,14 @@ Result<std::vector<Chosen>> chosen_cases(const CheckOptions& options) {
         known = true;
         for (checks::Case& one : suite->cases()) {
             if (options.quick && one.slow) continue;
-            if (pattern && !std::regex_search(std::string(suite->name) + "/" + one.name, *pattern)) continue;
+            // "suite/case", or the name of a figure as the table prints it: "suite/case/figure".
+            const std::string name = std::string(suite->name) + "/" + one.name;
+            const auto named = [&](const checks::Figure& figure) {
+                return std::regex_search(name + "/" + figure.name, *pattern);
+            };
+            if (pattern && !std::regex_search(name, *pattern) &&
+                std::none_of(one.figures.begin(), one.figures.end(), named))
+                continue;
             chosen.push_back({std::string(suite->name), std::move(one)});
         }
     }
@@ -190,7 +197,8 @@ void add_check(Command& program, CommandRegistry& registry) {
     auto& check = registry.options<CheckOptions>();
     Command command = program.add_command("check", "Measure on this machine what Fase promises");
     command.add_text("SUITE", "One of " + suite_names(", "), check.suite).required();
-    command.add_text("--case", "Only cases whose \"suite/case\" matches this regular expression", check.cases);
+    command.add_text("--case", "Only cases of which \"suite/case/figure\" matches this regular expression",
+                     check.cases);
     add_seed(command, "Seed of random scenes (default 1)", check.seed);
     command.add_whole_number("--runs", "Repetitions of random cases (default 100, or 20 with --quick)", 1, 1000000,
                              check.runs);

@@ -6,24 +6,22 @@
 
 namespace fase::cli {
 
-using scene::quoted;
-
 std::string Facts::json() const {
     std::string text = "{";
     for (const Entry& entry : entries_) {
         if (text.size() > 1) text += ", ";
-        text += quoted(entry.key) + ": ";
+        text += scene::quoted(entry.key) + ": ";
         std::vector<std::string> parts;
         if (const auto* words = std::get_if<std::string>(&entry.value)) {
-            text += quoted(*words);
+            text += scene::quoted(*words);
         } else if (const auto* plain = std::get_if<Plain>(&entry.value)) {
             text += plain->text;
         } else if (const auto* list = std::get_if<std::vector<std::string>>(&entry.value)) {
-            for (const std::string& one : *list) parts.push_back(quoted(one));
+            for (const std::string& one : *list) parts.push_back(scene::quoted(one));
             text += fmt::format("[{}]", fmt::join(parts, ", "));
         } else {
             for (const auto& [name, count] : std::get<Counts>(entry.value))
-                parts.push_back(fmt::format("{}: {}", quoted(name), count));
+                parts.push_back(fmt::format("{}: {}", scene::quoted(name), count));
             text += fmt::format("{{{}}}", fmt::join(parts, ", "));
         }
     }

@@ -16,7 +16,7 @@ namespace fase::atlas {
 namespace {
 
 /// Returns the text as a JSON string. Sprite names are UTF-8 (see problem_of_name()); file names are not checked.
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') {
@@ -47,7 +47,7 @@ std::string json_of(const Atlas& atlas, std::uint32_t page, const std::string& n
         if (frame.page != page) continue;
         text += separator;
         separator = ",\n";
-        text += array ? fmt::format("{{\"filename\":{},", quoted(frame.name)) : quoted(frame.name) + ":{";
+        text += array ? fmt::format("{{\"filename\":{},", json_string(frame.name)) : json_string(frame.name) + ":{";
         text += fmt::format("\"frame\":{},\"rotated\":{},\"trimmed\":{},\"spriteSourceSize\":{},\"sourceSize\":{}}}",
                             text_of(frame.part), frame.rotated, frame.trimmed, text_of(frame.source),
                             text_of(frame.source_size));
@@ -56,13 +56,13 @@ std::string json_of(const Atlas& atlas, std::uint32_t page, const std::string& n
     text += fmt::format(
         "\"meta\":{{\"app\":\"fase "
         "atlas\",\"version\":\"1.0\",\"image\":{},\"format\":\"RGBA8888\",\"size\":{},\"scale\":\"1\"",
-        quoted(page_name(page) + ".png"), text_of(atlas.pages[page].size));
+        json_string(page_name(page) + ".png"), text_of(atlas.pages[page].size));
     if (atlas.pages.size() > 1) {
         text += ",\"related_multi_packs\":[";
         const char* comma = "";
         for (std::uint32_t i = 0; i < atlas.pages.size(); ++i) {
             if (i == page) continue;
-            text += comma + quoted(page_name(i) + ".json");
+            text += comma + json_string(page_name(i) + ".json");
             comma = ",";
         }
         text += "]";

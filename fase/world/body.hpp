@@ -31,7 +31,9 @@ struct BodyDef {
     float gravity_scale = 1;
     AxisLocks locks{};
     bool can_sleep = true;
-    bool awake = true;  ///< false: starts asleep; the body and the bodies that touch it must then be at rest
+    /// False: starts asleep and stays where it is, even in the air, until something wakes it. The body and those that
+    /// touch it must then be at rest.
+    bool awake = true;
     /// Mass, centre and inertia in the body's frame, instead of the sum over colliders of shape times density.
     std::optional<MassProperties> mass{};
     std::uint64_t user = 0;  ///< user data; saved in snapshots and recordings, returned in BodyState

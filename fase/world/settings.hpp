@@ -17,7 +17,9 @@ struct Settings {
 
     // Contacts. Soft contacts are mass-independent springs. Source: Catto 2011, Soft constraints; Catto 2024, Solver2D
     // ("soft step").
-    float contact_frequency = 60;        ///< Hz; higher is harder; clamped to a tenth of the sub-step rate
+    /// Hz; higher is harder. At most a tenth of the sub-step rate acts: 24 Hz at 60 steps per second and 4 sub-steps,
+    /// 48 Hz at 8.
+    float contact_frequency = 60;
     float contact_damping_ratio = 10;    ///< 1 is critical; above 1, overlap is resolved slowly without bounce
     float push_out_speed = 3;            ///< m/s; the largest speed at which overlap is resolved (length)
     float restitution_threshold = 0.1f;  ///< m/s; a slower approach does not bounce (length)

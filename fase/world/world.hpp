@@ -36,7 +36,8 @@ struct ContactState {
 /// returned empty or left as they were. The one exception is step(): a step that runs out of memory leaves the world
 /// broken; from then on every call but restore() and the destructor returns an Error. Threads: non-const functions need
 /// exclusive access; const functions may run concurrently with each other. The same sequence of calls gives the same
-/// bits on every machine, for every thread count and structure.
+/// bits on every machine, for every thread count and structure. A World that was moved from may only be assigned to or
+/// destroyed.
 class World {
 public:
     /// Creates an empty world. BadArgument when a setting is out of range or the structure is unknown.
@@ -97,7 +98,8 @@ public:
     Result<void> exclude_pair(BodyId a, BodyId b);
     Result<void> include_pair(BodyId a, BodyId b);
 
-    // Forces and impulses, for dynamic bodies; BadArgument for others. Forces and torques act during the next step and
+    // Forces and impulses, for dynamic bodies; BadArgument for others. Forces and torques act during the next step of
+    // more than 0 s and
     // are then cleared; impulses change the velocity immediately. Points are in world space.
     Result<void> apply_force(BodyId body, Vec3 newtons);
     Result<void> apply_force_at(BodyId body, Vec3 newtons, Vec3d point);
