@@ -16,19 +16,22 @@ std::string with_sub_steps(const std::string& name, int sub_steps) { return name
 /// The limit for a number of sub-steps.
 double of(int sub_steps, double for_four, double for_eight) { return sub_steps == 8 ? for_eight : for_four; }
 
+/// The figures of a stack whose top may sink by `limit` metres, in the order of values_of().
+std::vector<Figure> stack_figures(double limit) {
+    return {{"sinks", "m", 0, -mm, limit},
+            {"worst_dip", "m", 0, -mm, 2 * limit},
+            at_most("drift", "m", 5 * mm),
+            at_most("energy_gain", "%", 0.1)};
+}
+std::vector<double> values_of(const Watched& seen) { return {seen.sinks, seen.worst_dip, seen.drift, seen.gain}; }
+
 Case straight_stack(int boxes, int sub_steps, double limit) {
-    return {with_sub_steps("stack_" + std::to_string(boxes), sub_steps),
-            {{"sinks", "m", 0, -mm, limit},
-             {"worst_dip", "m", 0, -mm, 2 * limit},
-             at_most("drift", "m", 5 * mm),
-             at_most("energy_gain", "%", 0.1)},
-            false,
+    return {with_sub_steps("stack_" + std::to_string(boxes), sub_steps), stack_figures(limit), false,
             [=](Context& context) -> std::vector<double> {
                 CheckWorld world(context, awake_settings(sub_steps));
                 world.add_ground();
                 add_stack(world, boxes);
-                const Watched seen = watch(world, context.quick ? 60 : 300);
-                return {seen.sinks, seen.worst_dip, seen.drift, seen.gain};
+                return values_of(watch(world, context.quick ? 60 : 300));
             }};
 }
 
@@ -48,13 +51,7 @@ Case crooked_stack(int boxes, double shift, bool random, int sub_steps) {
 
 Case mass_ratio(int ratio, bool sandwich, int sub_steps, double limit) {
     const std::string name = (sandwich ? "sandwich_" : "heavy_on_light_") + std::to_string(ratio);
-    return {with_sub_steps(name, sub_steps),
-            {{"sinks", "m", 0, -mm, limit},
-             {"worst_dip", "m", 0, -mm, 2 * limit},
-             at_most("drift", "m", 5 * mm),
-             at_most("energy_gain", "%", 0.1)},
-            false,
-            [=](Context& context) -> std::vector<double> {
+    return {with_sub_steps(name, sub_steps), stack_figures(limit), false, [=](Context& context) -> std::vector<double> {
                 CheckWorld world(context, awake_settings(sub_steps));
                 world.add_ground();
                 const float light = 100, heavy = light * static_cast<float>(ratio);
@@ -62,8 +59,7 @@ Case mass_ratio(int ratio, bool sandwich, int sub_steps, double limit) {
                 if (sandwich) world.add({.position = {0, y++, 0}}, Box{}, {.density = heavy});
                 world.add({.position = {0, y++, 0}}, Box{}, {.density = light});
                 world.add({.position = {0, y, 0}}, Box{}, {.density = heavy});
-                const Watched seen = watch(world, context.quick ? 60 : 300);
-                return {seen.sinks, seen.worst_dip, seen.drift, seen.gain};
+                return values_of(watch(world, context.quick ? 60 : 300));
             }};
 }
 

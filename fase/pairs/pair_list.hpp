@@ -54,10 +54,6 @@ public:
     template <class HasEnded, class End, class Add>
     void update(std::span<const broad::Pair> found, const HasEnded& has_ended, const End& end, const Add& add);
 
-    /// Moves the pairs for which `moves(index)` holds to `other`; both lists stay sorted, and no pair may be in both.
-    /// Where none moves, O(size) calls of the predicate and nothing else.
-    template <class Moves> void move_to(PairList& other, const Moves& moves);
-
 private:
     std::vector<broad::Pair> spare_pairs_;
     std::vector<std::uint32_t> spare_values_;
@@ -108,42 +104,6 @@ void PairList::update(std::span<const broad::Pair> found, const HasEnded& has_en
     }
     copy_until(size());
     swap_with_spare();
-}
-
-template <class Moves> void PairList::move_to(PairList& other, const Moves& moves) {
-    spare_pairs_.clear();
-    spare_values_.clear();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-        if (moves(i)) {
-            spare_pairs_.push_back(pairs[i]);
-            spare_values_.push_back(values[i]);
-        } else {
-            if (kept != i) {
-                pairs[kept] = pairs[i];
-                values[kept] = values[i];
-            }
-            ++kept;
-        }
-    }
-    if (spare_pairs_.empty()) return;
-    pairs.resize(kept);
-    values.resize(kept);
-    // Merged from the back, so that pairs before the first moved one stay in place.
-    std::size_t i = other.size(), j = spare_pairs_.size(), at = i + j;
-    other.pairs.resize(at);
-    other.values.resize(at);
-    while (j > 0) {
-        const bool takes_own = i > 0 && spare_pairs_[j - 1] < other.pairs[i - 1];
-        --at;
-        if (takes_own) {
-            other.pairs[at] = other.pairs[--i];
-            other.values[at] = other.values[i];
-        } else {
-            other.pairs[at] = spare_pairs_[--j];
-            other.values[at] = spare_values_[j];
-        }
-    }
 }
 
 }  // namespace fase::pairs

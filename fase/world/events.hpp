@@ -15,7 +15,7 @@ struct ContactEvent {
 /// Two colliders hit each other faster than Settings::restitution_threshold.
 struct HitEvent {
     ColliderId a, b;
-    Vec3d point;        ///< world, the deepest point of the contact
+    Vec3d point;        ///< world, where the surfaces met, at the moment of touch
     Vec3 normal;        ///< unit, from a to b
     float speed = 0;    ///< m/s of approach, before the hit
     float impulse = 0;  ///< N s along the normal, summed over the contact's points and the step

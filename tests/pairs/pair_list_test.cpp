@@ -67,32 +67,5 @@ TEST(PairList, ends_and_adds_pairs_as_a_map_does) {
     }
 }
 
-TEST(PairList, moves_pairs_to_another_list_and_keeps_both_sorted) {
-    Random random(2);
-    for (int round = 0; round < 200; ++round) {
-        PairList a, b;
-        Map map_a, map_b;
-        for (int i = 0; i < 40; ++i) {
-            const Pair pair = any_pair(random);
-            if (map_a.contains(pair) || map_b.contains(pair)) continue;
-            (random.below(2) == 0 ? map_a : map_b)[pair] = static_cast<std::uint32_t>(i);
-        }
-        for (const auto& [pair, value] : map_a) a.append(pair, value);
-        for (const auto& [pair, value] : map_b) b.append(pair, value);
-        const std::uint32_t divisor = 1 + static_cast<std::uint32_t>(random.below(4));
-        a.move_to(b, [&](std::size_t i) { return a.values[i] % divisor == 0; });
-        for (auto at = map_a.begin(); at != map_a.end();) {
-            if (at->second % divisor != 0) {
-                ++at;
-                continue;
-            }
-            map_b.insert(*at);
-            at = map_a.erase(at);
-        }
-        expect_equal(a, map_a);
-        expect_equal(b, map_b);
-    }
-}
-
 }  // namespace
 }  // namespace fase::pairs

@@ -6,14 +6,14 @@
 
 namespace fase::dynamics {
 
-/// The passes in the order of a step; Biased and Relax repeat in each sub-step.
+/// The passes in the order of a step; FindImpacts, Biased and Relax repeat in each sub-step.
 enum class Pass {
-    Prepare,      ///< computes effective masses and separations from the bodies at the beginning of the step
-    WarmStart,    ///< applies the impulses of the last step
+    Prepare,      ///< computes effective masses from the bodies at the beginning of the step
     FindImpacts,  ///< marks the contacts that hit with restitution in this sub-step
+    WarmStart,    ///< applies the impulses of the last step
     Biased,       ///< soft contacts, with push-out of overlap and friction
-    Finish,       ///< brings the separations to the end of the step
     Relax,        ///< hard contacts without push-out, with friction
+    Finish,       ///< brings the separations to the end of the step
 };
 
 /// Runs a pass over `count` blocks of a colour in order. Lanes of a Sides::Hub block that share a body solve their
