@@ -224,9 +224,11 @@ export class Player {
   private refreshCharts(): void {
     const { summaries } = this.charts;
     this.charts.appendNew();
-    if (summaries.length >= this.recording.frameCount) window.clearInterval(this.chartTimer);
+    const isComplete = summaries.length >= this.recording.frameCount;
+    if (isComplete) window.clearInterval(this.chartTimer);
     drawMarks(byId<HTMLCanvasElement>("marks"), summaries, this.recording.frameCount);
     if (!byId("charts").hidden) this.charts.draw(this.playback.frame);
+    document.documentElement.dataset.charts = isComplete ? "complete" : "loading";
   }
 
   private select(row: number | null): void {

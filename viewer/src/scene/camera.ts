@@ -52,6 +52,7 @@ export class Camera {
         towards + Math.max(Math.abs(point.dot(right)) / wide, Math.abs(point.dot(above)) / tall) * margin,
       );
     }
+    this.stop();
     this.controls.target.copy(centre);
     this.eye.position.copy(centre).addScaledVector(from, Math.max(distance, 0.5));
     this.controls.minDistance = 0.02 * half.length();
@@ -91,9 +92,17 @@ export class Camera {
     return [...this.eye.position.toArray(), ...this.controls.target.toArray()];
   }
   set eyeAndTarget(numbers: number[]) {
+    this.stop();
     this.eye.position.fromArray(numbers);
     this.controls.target.fromArray(numbers, 3);
     this.controls.update();
+  }
+
+  /** Ends the motion that a drag left behind. */
+  private stop(): void {
+    this.controls.enableDamping = false; // without damping, an update uses up all of the motion
+    this.controls.update();
+    this.controls.enableDamping = true;
   }
 
   /** Returns the ray through a point of the canvas, given as -1 to 1 (right, up). */

@@ -21,10 +21,10 @@ const waitForFrame = (page: Page, frame: number) =>
   });
 const text = (page: Page, selector: string) => page.locator(selector).innerText();
 
-/** Returns the page as shown: red, green, blue of every fourth pixel in each direction. */
+/** Returns the page as shown, its charts complete: red, green, blue of every fourth pixel in each direction. */
 async function pixels(page: Page): Promise<number[]> {
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  await page.waitForSelector("html[data-still=true]", { timeout: 60_000 });
+  await page.waitForSelector("html[data-still=true][data-charts=complete]", { timeout: 60_000 });
   const png = (await page.screenshot({ animations: "disabled" })).toString("base64");
   return page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -42,17 +42,26 @@ function changed(a: number[], b: number[]): number {
   return count / (a.length / 3);
 }
 
+/** What the page publishes for tests and for the console. */
+interface ViewerWindow {
+  fase: {
+    recording: Recording;
+    view: {
+      poses: { positions: Float64Array };
+      camera: { distance: number };
+      project(p: number[]): { x: number; y: number };
+    };
+  };
+}
+
+/** Returns the distance of the camera from its target, in metres. */
+const distanceOf = (page: Page) =>
+  page.evaluate(() => (window as unknown as ViewerWindow).fase.view.camera.distance);
+
 /** Returns the window position of a body. */
 const positionOf = (page: Page, name: string) =>
   page.evaluate((bodyName) => {
-    const { recording, view } = (
-      window as unknown as {
-        fase: {
-          recording: Recording;
-          view: { poses: { positions: Float64Array }; project(p: number[]): { x: number; y: number } };
-        };
-      }
-    ).fase;
+    const { recording, view } = (window as unknown as ViewerWindow).fase;
     const row = recording.tables.bodies.findIndex((body) => body.name === bodyName);
     return view.project([...view.poses.positions.subarray(3 * row, 3 * row + 3)]);
   }, name);
@@ -223,7 +232,9 @@ describe("the viewer in a browser", { skip }, () => {
     await page.mouse.down();
     await page.mouse.move(640, 280, { steps: 5 });
     await page.mouse.up();
+    const distance = await distanceOf(page);
     await page.mouse.wheel(0, -400);
+    await page.waitForFunction((d) => (window as unknown as ViewerWindow).fase.view.camera.distance < d, distance);
     const rotated = await pixels(page);
     assert.ok(changed(before, rotated) > 0.02);
     assert.equal(await page.isVisible("#body"), false, "a drag is not a click");
@@ -242,7 +253,7 @@ describe("the viewer in a browser", { skip }, () => {
     const { page } = visited;
     const box = await page.locator("#chart-times").boundingBox();
     assert.ok(box);
-    await page.waitForFunction(() => document.querySelectorAll("#legend-times .key b").length > 0);
+    await page.waitForSelector("html[data-charts=complete]");
     await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
     await page.waitForSelector("#tip:not([hidden])");
     const tip = await text(page, "#tip");
