@@ -7,6 +7,7 @@ namespace fase {
 
 using broad::Pair;
 using dynamics::Contact;
+using dynamics::ContactManifold;
 
 std::uint32_t add_contact(WorldState& state, Pair pair) {
     std::uint32_t index;
@@ -29,17 +30,20 @@ std::uint32_t add_contact(WorldState& state, Pair pair) {
     contact.generation_b = state.collider_ids.slots()[pair.b].generation;
     contact.sensor = a.sensor || b.sensor;
     contact.sensor_is_b = b.sensor;
+    state.manifolds.reserve(contact, 1);
     update_materials(state, index);
     state.contact_graph.add(index, pair.a, pair.b);
     return index;
 }
 
 void update_materials(WorldState& state, std::uint32_t index) {
-    Contact& contact = state.contacts[index];
+    const Contact& contact = state.contacts[index];
     const Material& a = state.colliders[contact.collider_a].material;
     const Material& b = state.colliders[contact.collider_b].material;
-    contact.friction = combined(a.friction, a.friction_combine, b.friction, b.friction_combine);
-    contact.restitution = combined(a.restitution, a.restitution_combine, b.restitution, b.restitution_combine);
+    for (ContactManifold& manifold : state.manifolds.places(contact)) {
+        manifold.friction = combined(a.friction, a.friction_combine, b.friction, b.friction_combine);
+        manifold.restitution = combined(a.restitution, a.restitution_combine, b.restitution, b.restitution_combine);
+    }
 }
 
 namespace {
@@ -75,7 +79,11 @@ void end_contact(WorldState& state, std::uint32_t index) {
     set_touching(state, state.contacts[index], false);
     if (state.contact_graph.resting_at(index) != no_index) remove_resting(state, index);
     state.contact_graph.remove(index);
-    state.contacts[index] = {};
+    Contact& contact = state.contacts[index];
+    for (ContactManifold& manifold : state.manifolds.coloured(contact))
+        state.colours.release(manifold.colour, contact.body_a, contact.body_b);
+    state.manifolds.release(contact);
+    contact = {};
     state.free_contacts.push_back(index);
 }
 
@@ -103,6 +111,52 @@ void rebuild_contact_graph(WorldState& state) {
             state.contact_graph.add(list->values[i], list->pairs[i].a, list->pairs[i].b);
     for (std::size_t i = 0; i < state.resting.size(); ++i)
         state.contact_graph.set_resting_at(state.resting.values[i], static_cast<std::uint32_t>(i));
+}
+
+void gather_constraints(WorldState& state, std::span<const std::uint32_t> quarantined) {
+    constexpr std::uint8_t moves = 1, left_out = 2;
+    std::vector<std::uint8_t>& role = state.roles;
+    role.assign(state.bodies.traits.size(), 0);
+    for (const std::uint32_t body : state.awake)
+        role[body] = state.bodies.traits[body].kind == BodyKind::Dynamic ? moves : 0;
+    for (const std::uint32_t body : quarantined) role[body] = left_out;
+    state.colours.resize(state.bodies.traits.size());
+    state.constraints.clear();
+    state.results.clear();
+    state.sensors.clear();
+    for (const std::uint32_t index : state.active.values) {
+        Contact& c = state.contacts[index];
+        if (c.sensor) {
+            state.sensors.push_back(index);
+            continue;
+        }
+        for (std::size_t i = c.manifolds; i < c.coloured; ++i)
+            state.colours.release(state.manifolds.coloured(c)[i].colour, c.body_a, c.body_b);
+        c.coloured = c.manifolds;
+        dynamics::Constraint constraint{c.first_manifold, index, c.body_a, c.body_b};
+        if (role[c.body_a] != left_out && role[c.body_b] != left_out)
+            constraint.moves = dynamics::moves_of(role[c.body_a] == moves, role[c.body_b] == moves);
+        constraint.began = !c.touching;
+        constraint.touches = c.touching || c.nearest <= state.settings.linear_slop;
+        for (std::size_t i = 0; i < c.manifolds; ++i, ++constraint.index) {
+            state.constraints.push_back(constraint);
+            state.results.push_back({c.nearest});
+        }
+    }
+}
+
+bool rebuild_colours(WorldState& state) {
+    state.colours.clear();
+    state.colours.resize(state.bodies.traits.size());
+    for (const Contact& c : state.contacts) {
+        const std::span<const ContactManifold> places = state.manifolds.places(c);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const dynamics::ConstraintColour colour = places[i].colour;
+            if (i >= c.coloured && colour.number != dynamics::ConstraintColour::none) return false;
+            if (!state.colours.restore(colour, c.body_a, c.body_b)) return false;
+        }
+    }
+    return true;
 }
 
 void sort_by_pair(const WorldState& state, std::vector<std::uint32_t>& contacts) {

@@ -25,7 +25,8 @@ float load_of(const WorldState& state, std::uint32_t body, float seconds) {
     add(length(state.settings.gravity) * state.bodies.traits[body].mass.mass);
     for_each_touched(state, body, [&](const Contact& c, std::uint32_t) {
         if (!carries(state, c, body)) return;
-        for (int i = 0; i < c.count; ++i) add(c.total_impulse[i] / seconds);
+        for (const dynamics::ContactManifold& manifold : state.manifolds.of(c))
+            for (int i = 0; i < manifold.count; ++i) add(manifold.total_impulse[i] / seconds);
     });
     return static_cast<float>(sum) / scale;
 }

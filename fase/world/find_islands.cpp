@@ -6,28 +6,30 @@
 namespace fase {
 
 using dynamics::BodyTraits;
-using dynamics::Contact;
+using dynamics::Constraint;
+using dynamics::Moves;
 
 namespace {
 
 /// The speed at which the bodies close their gap, m/s; negative: they part.
-float closing_speed(const WorldState& state, const Contact& c) {
+float closing_speed(const WorldState& state, const Constraint& c) {
     const dynamics::BodyMotion& a = state.bodies.motion[c.body_a];
     const dynamics::BodyMotion& b = state.bodies.motion[c.body_b];
-    return dot(a.linear_velocity + cross(a.angular_velocity, c.offset_a) - b.linear_velocity -
-                   cross(b.angular_velocity, c.offset_b),
-               c.normal);
+    const dynamics::ContactManifold& manifold = state.manifolds[c.index];
+    return dot(a.linear_velocity + cross(a.angular_velocity, manifold.offset_a) - b.linear_velocity -
+                   cross(b.angular_velocity, manifold.offset_b),
+               manifold.normal);
 }
 
 /// Wakes sleepers that a moving kinematic body touches, that a dynamic one begins to touch, and those behind a blow.
 /// What a dynamic body already touches wakes in the stage "sleep".
-void wake_touched(WorldState& state, const Contact& c, float seconds) {
+void wake_touched(WorldState& state, const Constraint& c, float seconds) {
     const auto is_asleep = [&](std::uint32_t body) {
         return state.bodies.traits[body].motion_state == MotionState::Asleep &&
                state.bodies.traits[body].kind == BodyKind::Dynamic;
     };
     const float speed = closing_speed(state, c);
-    const bool near = c.touching || c.nearest <= state.settings.linear_slop || speed * seconds >= c.nearest;
+    const bool near = c.touches || speed * seconds >= state.contacts[c.owner].nearest;
     if (!near) return;
     const bool is_blow = speed > 2 * state.settings.sleep_linear_speed;
     for (const auto& [mover, other] : {std::pair{c.body_a, c.body_b}, std::pair{c.body_b, c.body_a}}) {
@@ -37,7 +39,7 @@ void wake_touched(WorldState& state, const Contact& c, float seconds) {
             if (is_moving(state.bodies.motion[mover]) && is_asleep(other)) request_wake(state, other);
         } else if (is_blow) {
             state.blows.push_back({other, traits.mass.mass * speed});
-        } else if (!c.touching && is_asleep(other)) {
+        } else if (c.began && is_asleep(other)) {
             state.blows.push_back({other, 0});
         }
     }
@@ -48,34 +50,24 @@ void wake_touched(WorldState& state, const Contact& c, float seconds) {
 void find_islands(WorldState& state, float seconds) {
     state.blows.clear();
     if (!state.asleep.bodies.empty())
-        for (const std::uint32_t index : state.touching) wake_touched(state, state.contacts[index], seconds);
+        for (const Constraint& constraint : state.constraints) wake_touched(state, constraint, seconds);
     const std::size_t before = state.awake.size();
     for (const Blow& blow : state.blows) wake_struck(state, blow.body, blow.momentum);
     wake_requested_islands(state);
-    if (state.awake.size() != before) {
-        // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
-        state.touching.clear();
-        state.sensors.clear();
-        for (const std::uint32_t index : state.active.values) {
-            const Contact& c = state.contacts[index];
-            if (c.sensor) state.sensors.push_back(index);
-            if (c.count > 0 && !c.sensor) state.touching.push_back(index);
-        }
-    }
+    // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
+    if (state.awake.size() != before) gather_constraints(state);
 
     state.sets.reset(state.bodies.traits.size());
-    for (const std::uint32_t index : state.touching) {
-        const Contact& c = state.contacts[index];
-        const BodyTraits& a = state.bodies.traits[c.body_a];
-        const BodyTraits& b = state.bodies.traits[c.body_b];
-        const bool both = a.kind == BodyKind::Dynamic && b.kind == BodyKind::Dynamic;
-        const bool touches = c.touching || c.nearest <= state.settings.linear_slop;
-        if (!touches) continue;
-        if (both && a.motion_state == MotionState::Awake && b.motion_state == MotionState::Awake) {
+    const auto moving_kinematic = [&](std::uint32_t body) {
+        return state.bodies.traits[body].kind == BodyKind::Kinematic && is_moving(state.bodies.motion[body]);
+    };
+    for (const Constraint& c : state.constraints) {
+        if (!c.touches) continue;
+        if (c.moves == Moves::Both) {
             state.sets.unite(c.body_a, c.body_b);
-        } else if (a.kind == BodyKind::Kinematic && is_moving(state.bodies.motion[c.body_a])) {
+        } else if (moving_kinematic(c.body_a)) {
             state.bodies.motion[c.body_b].sleep_time = 0;
-        } else if (b.kind == BodyKind::Kinematic && is_moving(state.bodies.motion[c.body_b])) {
+        } else if (moving_kinematic(c.body_b)) {
             state.bodies.motion[c.body_a].sleep_time = 0;
         }
     }

@@ -17,15 +17,32 @@ ContactEvent ids_of(const WorldState& state, const Contact& c) {
 
 /// Hysteresis: touching begins within the slop and ends beyond twice the slop, so that a resting contact does not
 /// flicker.
-bool touches(const WorldState& state, const Contact& c) {
-    if (c.count == 0) return false;
-    if (c.sensor) return c.nearest <= 0;
-    return c.pushes || c.nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
+bool touches(const WorldState& state, const Contact& c, float nearest, bool pushes) {
+    if (c.manifolds == 0) return false;
+    if (c.sensor) return nearest <= 0;
+    return pushes || nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
 }
 
-/// Returns where the surfaces met, in world space.
-Vec3d hit_point(const WorldState& state, const Contact& c) {
-    return state.bodies.motion[c.body_a].position + to_double(c.hit_offset_a);
+/// Publishes what happened at one contact; its constraints begin at number `first`.
+void publish_contact(WorldState& state, Contact& c, std::size_t first) {
+    float nearest = Aabb::infinity, approach = 0, impulse = 0;
+    bool pushes = false;
+    std::size_t hardest = first;
+    for (std::size_t i = first; i < first + c.manifolds; ++i) {
+        const dynamics::ContactResult& result = state.results[i];
+        nearest = std::min(nearest, result.nearest);
+        if (!result.pushes) continue;
+        pushes = true;
+        impulse += result.impulse;
+        approach = std::max(approach, result.approach);
+        if (result.impulse > state.results[hardest].impulse) hardest = i;
+    }
+    set_touching(state, c, touches(state, c, nearest, pushes));
+    if (!pushes || !(approach > state.settings.restitution_threshold)) return;
+    const ContactEvent ids = ids_of(state, c);
+    const Vec3d place = state.bodies.motion[c.body_a].position + to_double(state.results[hardest].hit_offset_a);
+    state.events.hits.push_back(
+        {ids.a, ids.b, place, state.manifolds[state.constraints[hardest].index].normal, approach, impulse});
 }
 
 template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
@@ -37,21 +54,17 @@ template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
 void publish_events(WorldState& state) {
     Events& events = state.events;
     for (const std::uint32_t index : state.checked)  // one that woke in this step is in the active list now
-        if (state.contact_graph.resting_at(index) != no_index)
-            set_touching(state, state.contacts[index], touches(state, state.contacts[index]));
+        if (Contact& c = state.contacts[index]; state.contact_graph.resting_at(index) != no_index)
+            set_touching(state, c, touches(state, c, c.nearest, false));
+    std::size_t first = 0;
     for (const std::uint32_t index : state.active.values) {
         Contact& c = state.contacts[index];
-        set_touching(state, c, touches(state, c));
-        if (c.pushes && c.approach > state.settings.restitution_threshold) {
-            HitEvent hit{{}, {}, hit_point(state, c), c.normal, c.approach, 0};
-            const ContactEvent ids = ids_of(state, c);
-            hit.a = ids.a;
-            hit.b = ids.b;
-            for (int i = 0; i < c.count; ++i) hit.impulse += c.total_impulse[i];
-            events.hits.push_back(hit);
+        if (c.sensor) {
+            set_touching(state, c, touches(state, c, c.nearest, false));
+        } else {
+            publish_contact(state, c, first);
+            first += c.manifolds;
         }
-        c.pushes = false;
-        c.approach = 0;
     }
     const auto pair_key = [](const ContactEvent& e) { return std::tuple{e.a.index, e.b.index, e.a.generation}; };
     sort_by(events.contacts_begun, pair_key);

@@ -7,6 +7,8 @@ namespace fase {
 
 namespace {
 
+constexpr float slow_path = 0.2f;  // per step, in margins: only the boxes of slower bodies get one
+
 /// Returns v, scaled to length `max` when it is longer.
 Vec3 limited(Vec3 v, float max, bool& clamped) {
     const Vec3d exact = to_double(v);
@@ -44,13 +46,14 @@ void refresh_boxes(WorldState& state, float seconds) {
             const float path = length(state.bodies.motion[body].linear_velocity) * seconds;
             const float sweep = path > 0.5f * traits.inner_radius ? path : 0;
             state.sweep[body] = sweep;
+            const float margin = path < slow_path * state.settings.box_margin ? state.settings.box_margin : 0;
             for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
                 const Aabb box = speculative_box(state, c, seconds, sweep);
                 if (contains(state.boxes[c], box) && !(state.changes[c] & edited)) continue;
                 const Vec3 size = extent(box);
                 const float largest = std::max({size.x, size.y, size.z});
                 state.previous_boxes[c] = state.boxes[c];
-                state.boxes[c] = enlarged(box, std::min(state.settings.box_margin, 0.25f * largest));
+                state.boxes[c] = enlarged(box, std::min(margin, 0.25f * largest));
                 state.changes[c] |= moved_box;
             }
         }

@@ -12,7 +12,7 @@ void disturb_around_edits(WorldState& state) {
     for (const std::uint32_t edit : state.edited_colliders)
         state.contact_graph.for_each_of(edit, [&](std::uint32_t index) {
             const Contact& c = state.contacts[index];
-            if (c.sensor || c.count == 0) return;
+            if (c.sensor || c.manifolds == 0) return;
             for (const auto& [collider, generation, body] : sides_of(c))
                 if (is_current(state, collider, generation)) disturb(state, body);
         });

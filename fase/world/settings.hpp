@@ -30,9 +30,9 @@ struct Settings {
     float contact_reuse_distance = 0.01f;
 
     // The broad phase.
-    /// m; margin of the boxes: a body queries pairs only after it left its enlarged box (length). Pairs are cheap to
-    /// find and dear to collide, so tight boxes are faster, except in worlds that hardly move.
-    float box_margin = 0;
+    /// m; margin of the boxes of bodies that move less than a fifth of it in a step: they query pairs only after they
+    /// left their enlarged box (length). Pairs are cheap to find and dear to collide, so faster bodies get none.
+    float box_margin = 0.005f;
 
     // Sleep. A body is at rest when for `time_to_sleep` seconds it was slower than both speeds, and the net motion of
     // its points stayed below `sleep_distance`. An island falls asleep when all its bodies are at rest, except for a

@@ -15,7 +15,7 @@ namespace fase {
 namespace {
 
 using dynamics::Contact;
-constexpr std::uint32_t snapshot_version = 2;
+constexpr std::uint32_t snapshot_version = 3;
 constexpr char snapshot_magic[8] = {'F', 'A', 'S', 'E', 'S', 'N', 'A', 'P'};
 constexpr std::size_t head_size = sizeof snapshot_magic + 4 + 8 + 8;
 
@@ -150,11 +150,14 @@ template <class A> void describe(A& a, Collider& c) {
 }
 template <class A> void describe(A& a, Contact& c) {
     if constexpr (A::saves) all(a, c.generation_a, c.generation_b);
-    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.count, c.sensor, c.sensor_is_b, c.touching, c.reusable,
-        c.pushes, c.a_rolls, c.b_rolls, c.friction, c.restitution, c.position_a, c.position_b, c.rotation_a,
-        c.rotation_b, c.first_normal, c.first_tangent, c.first_offset_a, c.first_offset_b, c.first_separation,
-        c.reuse_distance, c.normal, c.tangent, c.offset_a, c.offset_b, c.separation, c.x, c.y, c.feature, c.impulse,
-        c.total_impulse, c.friction_impulse, c.twist_impulse, c.nearest, c.approach, c.hit_offset_a);
+    all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.manifolds, c.coloured, c.points, c.sensor, c.sensor_is_b,
+        c.touching, c.reusable, c.nearest, c.reuse_distance, c.b_from_a, c.rotation_a, c.rotation_b);
+}
+template <class A> void describe(A& a, dynamics::ContactManifold& m) {
+    all(a, m.key.child_a, m.key.child_b, m.key.triangle, m.count, m.a_rolls, m.b_rolls, m.colour.number, m.colour.moves,
+        m.friction, m.restitution, m.normal, m.first_tangent, m.first_offset_a, m.first_offset_b, m.first_separation,
+        m.tangent, m.offset_a, m.offset_b, m.separation, m.x, m.y, m.feature, m.impulse, m.total_impulse,
+        m.friction_impulse, m.twist_impulse);
 }
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
@@ -211,6 +214,23 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
     }
 }
 
+/// The manifolds of each contact, wherever they lie in the pool; the first place of a contact that exists has friction
+/// and restitution even without points.
+template <class A> void describe_manifolds(A& a, WorldState& s) {
+    for (Contact& c : s.contacts) {
+        if (c.body_a == c.body_b) continue;  // free
+        const std::size_t count = std::max<std::size_t>({c.manifolds, c.coloured, 1});
+        if constexpr (A::reads) {
+            if (a.failed || count > dynamics::ManifoldPool::max_per_contact) {
+                a.failed = true;
+                return;
+            }
+            s.manifolds.reserve(c, count);
+        }
+        for (std::size_t i = 0; i < count; ++i) describe(a, s.manifolds.places(c)[i]);
+    }
+}
+
 /// The one list of all state of a world that is hashed and saved.
 template <class A> void describe(A& a, WorldState& s) {
     all(a, s.settings, s.steps, s.time, s.last_sub_step, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces,
@@ -218,6 +238,7 @@ template <class A> void describe(A& a, WorldState& s) {
         s.asleep.bodies, s.active.pairs, s.active.values, s.resting.pairs, s.resting.values, s.contacts,
         s.free_contacts, s.edited_colliders, s.bodies_to_wake, s.bodies_let_go, s.contacts_to_check, s.removed_any,
         s.query_all_awake);
+    describe_manifolds(a, s);
     std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
@@ -364,6 +385,8 @@ Result<IdMap> World::restore(std::span<const std::byte> snapshot) {
         const std::string_view wrong =
             archive.failed || archive.at != payload->size() ? "an incomplete state" : wrong_part(*next);
         if (!wrong.empty()) return not_a_snapshot(head_size + archive.at, std::string(wrong), "a consistent state");
+        if (!rebuild_colours(*next))
+            return not_a_snapshot(head_size + archive.at, "contradictory colours", "a consistent state");
         IdMap map;
         map.from_ = next->body_ids.owner();
         map.to_ = state_->body_ids.owner();

@@ -57,31 +57,21 @@ void quarantine_invalid_forces(WorldState& state, float seconds) {
         state.bodies.forces[body] = {};
         quarantine(state, body);
     }
-    std::erase_if(state.touching, [&](std::uint32_t index) {
-        const dynamics::Contact& c = state.contacts[index];
-        return state.bodies.traits[c.body_a].quarantined || state.bodies.traits[c.body_b].quarantined;
-    });
     move_to_asleep(state, invalid);
+    gather_constraints(state, invalid);
 }
 
 }  // namespace
 
 void solve(WorldState& state, float seconds) {
     quarantine_invalid_forces(state, seconds);
-    // Drop contacts without an awake dynamic body: the solver cannot move either side.
-    std::erase_if(state.touching, [&](std::uint32_t index) {
-        const dynamics::Contact& c = state.contacts[index];
-        const auto moves = [&](std::uint32_t body) {
-            const BodyTraits& traits = state.bodies.traits[body];
-            return traits.kind == BodyKind::Dynamic && traits.motion_state == MotionState::Awake;
-        };
-        return !moves(c.body_a) && !moves(c.body_b);
-    });
     const dynamics::SolverSettings settings = solver_settings(state, seconds);
     state.solver.load_bodies(state.bodies, state.awake, settings, *state.tasks);
-    state.solver.load_contacts(state.contacts, state.touching, state.bodies, settings, *state.tasks);
+    state.solver.load_constraints({state.constraints, state.results}, state.colours, state.manifolds, state.bodies,
+                                  settings, *state.tasks);
     state.solver.run(settings, *state.tasks);
-    state.solver.store_contacts(state.contacts, state.bodies, settings, *state.tasks);
+    state.solver.store_constraints(state.constraints, state.manifolds, state.results, state.bodies, settings,
+                                   *state.tasks);
     state.last_sub_step = seconds / static_cast<float>(state.settings.sub_steps);
     const dynamics::SolverCounts counts = state.solver.counts();
     state.report.colours = counts.colours;
@@ -99,10 +89,9 @@ namespace {
 void mark_held(WorldState& state) {
     state.held.resize(state.bodies.traits.size());
     for (const std::uint32_t body : state.awake) state.held[body] = 0;
-    for (const std::uint32_t index : state.touching) {
-        const dynamics::Contact& c = state.contacts[index];
-        if (c.pushes) state.held[c.body_a] = state.held[c.body_b] = 1;
-    }
+    for (std::size_t i = 0; i < state.constraints.size(); ++i)
+        if (state.results[i].pushes)
+            state.held[state.constraints[i].body_a] = state.held[state.constraints[i].body_b] = 1;
 }
 
 /// Whether gravity alone acts on a body: it is slow only because it has just begun to fall.

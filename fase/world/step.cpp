@@ -21,8 +21,9 @@ std::uint64_t bytes_held(const WorldState& s) {
     std::uint64_t trees = of(s.query.tree_of) + of(s.query.pending);
     for (const broad::WideBvh& tree : s.query.trees) trees += tree.bytes();
     return trees + of(s.bodies.traits) + of(s.bodies.motion) + of(s.bodies.forces) + of(s.colliders) + of(s.boxes) +
-           of(s.contacts) + s.active.bytes() + s.resting.bytes() + of(s.candidates) + of(s.query_boxes) +
-           of(s.previous_boxes) + s.contact_graph.bytes() + s.box_sets.bytes() + s.asleep.bytes() + s.solver.bytes();
+           of(s.contacts) + s.manifolds.bytes() + s.colours.bytes() + of(s.constraints) + of(s.results) +
+           s.active.bytes() + s.resting.bytes() + of(s.candidates) + of(s.query_boxes) + of(s.previous_boxes) +
+           s.contact_graph.bytes() + s.box_sets.bytes() + s.asleep.bytes() + s.solver.bytes();
 }
 
 }  // namespace

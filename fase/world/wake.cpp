@@ -27,8 +27,10 @@ void disturb(WorldState& state, std::uint32_t body) {
 bool carries(const WorldState& state, const Contact& c, std::uint32_t lower) {
     constexpr float min_cosine = 0.2f;  // flatter contacts carry little
     const float gravity = length(state.settings.gravity);
-    const float down = dot(c.normal, state.settings.gravity) * (c.body_a == lower ? 1.0f : -1.0f);
-    return down < -min_cosine * gravity;
+    const float sign = c.body_a == lower ? 1.0f : -1.0f;
+    return std::ranges::any_of(state.manifolds.of(c), [&](const dynamics::ContactManifold& manifold) {
+        return sign * dot(manifold.normal, state.settings.gravity) < -min_cosine * gravity;
+    });
 }
 
 void add_carried(const WorldState& state, std::vector<std::uint32_t>& bodies, std::vector<std::uint8_t>& marks) {

@@ -110,34 +110,42 @@ BodyState state_of(const WorldState& state, BodyId id) {
     return out;
 }
 
-/// Returns a contact that has points and whose colliders exist.
-std::optional<ContactState> contact_of(const WorldState& state, std::uint32_t index) {
-    const dynamics::Contact& c = state.contacts[index];
+/// Returns one manifold of a contact.
+ContactState state_of(const WorldState& state, const dynamics::Contact& c, const dynamics::ContactManifold& m) {
     ContactState contact;
     contact.a = {c.collider_a, c.generation_a, state.collider_ids.owner()};
     contact.b = {c.collider_b, c.generation_b, state.collider_ids.owner()};
-    if (c.count == 0 || !state.collider_ids.contains(contact.a) || !state.collider_ids.contains(contact.b))
-        return std::nullopt;
-    contact.normal = c.normal;
-    contact.count = c.count;
+    contact.normal = m.normal;
+    contact.count = m.count;
     contact.sensor = c.sensor;
-    const Vec3 second = cross(c.normal, c.tangent);
+    const Vec3 second = cross(m.normal, m.tangent);
     // Midway between the points of both bodies as they are now.
     const dynamics::BodyMotion &a = state.bodies.motion[c.body_a], &b = state.bodies.motion[c.body_b];
     const auto now = [](const dynamics::BodyMotion& body, Quat rotation_then, bool rolls, Vec3 offset, Vec3 first) {
         return body.position +
                to_double(rolls ? offset : rotate(normalized(body.rotation * conjugate(rotation_then)), first));
     };
-    const Vec3d centre = (now(a, c.rotation_a, c.a_rolls, c.offset_a, c.first_offset_a) +
-                          now(b, c.rotation_b, c.b_rolls, c.offset_b, c.first_offset_b)) *
+    const Vec3d centre = (now(a, c.rotation_a, m.a_rolls, m.offset_a, m.first_offset_a) +
+                          now(b, c.rotation_b, m.b_rolls, m.offset_b, m.first_offset_b)) *
                          0.5;
-    for (std::size_t i = 0; i < c.count; ++i) {
-        contact.points[i] = centre + to_double(c.tangent * c.x[i] + second * c.y[i]);
-        contact.separations[i] = c.separation[i];
-        contact.impulses[i] = c.total_impulse[i];
-        contact.features[i] = c.feature[i];
+    for (std::size_t i = 0; i < m.count; ++i) {
+        contact.points[i] = centre + to_double(m.tangent * m.x[i] + second * m.y[i]);
+        contact.separations[i] = m.separation[i];
+        contact.impulses[i] = m.total_impulse[i];
+        contact.features[i] = m.feature[i];
     }
     return contact;
+}
+
+/// Calls f(manifold, contact) for each manifold with points whose colliders exist.
+template <class F> void for_each_manifold(const WorldState& state, const F& f) {
+    for (const pairs::PairList* list : {&state.active, &state.resting})
+        for (const std::uint32_t index : list->values) {
+            const dynamics::Contact& c = state.contacts[index];
+            const auto [a, b] = sides_of(c);
+            if (!is_current(state, a.collider, a.generation) || !is_current(state, b.collider, b.generation)) continue;
+            for (const dynamics::ContactManifold& manifold : state.manifolds.of(c)) f(c, manifold);
+        }
 }
 
 }  // namespace
@@ -210,10 +218,12 @@ std::vector<ColliderId> World::colliders_of(BodyId body) const {
 
 void World::read_contacts(std::vector<ContactState>& out) const {
     if (state_->broken) return;
-    append(out, state_->active.size() + state_->resting.size(), [&] {
-        for (const pairs::PairList* list : {&state_->active, &state_->resting})
-            for (const std::uint32_t index : list->values)
-                if (const auto contact = contact_of(*state_, index)) out.push_back(*contact);
+    std::size_t count = 0;
+    for_each_manifold(*state_, [&](const auto&, const auto&) { ++count; });
+    append(out, count, [&] {
+        for_each_manifold(*state_, [&](const dynamics::Contact& contact, const dynamics::ContactManifold& manifold) {
+            out.push_back(state_of(*state_, contact, manifold));
+        });
     });
 }
 

@@ -19,7 +19,7 @@ namespace fase {
 struct WorldState;
 struct WorldStateAccess;
 
-/// One contact, for drawing, tools and tests.
+/// One manifold of a contact, for drawing, tools and tests. A pair of convex shapes has one.
 struct ContactState {
     ColliderId a, b;
     Vec3 normal;  ///< world, unit, from a to b

@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "fase/core/random.hpp"
-#include "fase/dynamics/solver/colouring.hpp"
 #include "fase/dynamics/solver/contact_passes.hpp"
 #include "fase/dynamics/solver/hub_blocks.hpp"
 #include "fase/dynamics/solver/integrate.hpp"
@@ -245,30 +244,6 @@ TEST(Islands, sets_do_not_depend_on_the_order_and_are_named_by_their_smallest_me
         }
         for (const auto& [a, b] : links) EXPECT_EQ(forward.find(a), forward.find(b));
     }
-}
-
-TEST(Colouring, no_body_has_two_contacts_of_one_colour) {
-    Random random(2);
-    Colouring colouring;
-    colouring.reset(30);
-    std::vector<std::vector<int>> seen(30);
-    int overflow = 0;
-    for (int i = 0; i < 2000; ++i) {
-        const auto a = static_cast<std::uint32_t>(random.below(30)), b = static_cast<std::uint32_t>(random.below(30));
-        if (a == b) continue;
-        const int colour = colouring.colour(a, b);
-        if (colour == Colouring::none) {
-            ++overflow;
-            continue;
-        }
-        EXPECT_LT(colour, Colouring::two_sided);
-        for (const std::uint32_t body : {a, b}) {
-            EXPECT_EQ(std::count(seen[body].begin(), seen[body].end(), colour), 0);
-            seen[body].push_back(colour);
-        }
-    }
-    EXPECT_GT(overflow, 0);
-    EXPECT_GE(colouring.colour_one_sided(3), Colouring::two_sided);
 }
 
 }  // namespace

@@ -53,14 +53,14 @@ void KnownLoads::weigh_bodies(const Input& in, Vec3 up) {
 
 void KnownLoads::find_supports(const Input& in, Vec3 up, TaskRunner& tasks) {
     // Dynamic bodies that lie on their contacts; row 0 takes the contacts that carry nothing.
-    supports_.resize(in.active.size());
-    parallel_ranges(tasks, in.active.size(), support_grain, [&](std::size_t begin, std::size_t end) {
+    supports_.resize(in.list.constraints.size());
+    parallel_ranges(tasks, supports_.size(), support_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Contact& c = in.contacts[in.active[i]];
-            const float cosine = dot(c.normal, up);
+            const Constraint& c = in.list.constraints[i];
+            const float cosine = dot(in.manifolds[c.index].normal, up);
             Support& support = supports_[i];
             support = {std::abs(cosine), 0, in.row_of_body[cosine > 0 ? c.body_a : c.body_b]};
-            if (!(c.nearest < in.resting_gap && support.cosine > min_upward)) continue;
+            if (!(in.list.results[i].nearest < in.resting_gap && support.cosine > min_upward)) continue;
             const std::uint32_t row = in.row_of_body[cosine > 0 ? c.body_b : c.body_a];
             if (in.motions[row].is_dynamic) support.upper = row;
         }
@@ -80,7 +80,7 @@ void KnownLoads::list_contacts_below() {
 }
 
 std::span<const float> KnownLoads::find(const Input& in, TaskRunner& tasks) {
-    loads_.assign(in.active.size(), 0);
+    loads_.assign(in.list.constraints.size(), 0);
     const float gravity = length(in.gravity);
     if (!(gravity > 0)) return loads_;
     const Vec3 up = in.gravity * (-1 / gravity);

@@ -6,8 +6,8 @@
 
 #include "fase/core/tasks.hpp"
 #include "fase/dynamics/solver/bodies.hpp"
-#include "fase/dynamics/solver/contact.hpp"
-#include "fase/dynamics/solver/integrate.hpp"
+#include "fase/dynamics/solver/contact_lanes.hpp"
+#include "fase/dynamics/solver/manifold_pool.hpp"
 
 namespace fase::dynamics {
 
@@ -19,8 +19,8 @@ namespace fase::dynamics {
 class KnownLoads {
 public:
     struct Input {
-        std::span<const Contact> contacts;
-        std::span<const std::uint32_t> active;  ///< indices of contacts
+        const ConstraintInput& list;
+        const ManifoldPool& manifolds;
         const Bodies& bodies;
         std::span<const std::uint32_t> awake;        ///< bodies; number i has row i + 1
         std::span<const std::uint32_t> row_of_body;  ///< 0: static or asleep
@@ -28,7 +28,7 @@ public:
         Vec3 gravity;                                ///< m/s²
         float resting_gap = 0;                       ///< m; contacts that are farther apart carry nothing
     };
-    /// Returns for each active contact the impulse along its normal, N s per sub-step, valid until the next call.
+    /// Returns for each constraint the impulse along its normal, N s per sub-step, valid until the next call.
     [[nodiscard]] std::span<const float> find(const Input& in, TaskRunner& tasks);
 
 private:
@@ -50,8 +50,8 @@ private:
     /// Lists the rows that lie on contacts, the highest first when any lies on another.
     void sort_top_down(bool any_stack);
 
-    std::vector<float> loads_;       // by active contact
-    std::vector<Support> supports_;  // by active contact
+    std::vector<float> loads_;       // by constraint
+    std::vector<Support> supports_;  // by constraint
     std::vector<Carrier> carriers_;  // by row
     std::vector<std::uint32_t> contacts_below_;
     std::vector<std::uint32_t> top_down_, sort_keys_, sort_scratch_;  // rows; keys by row

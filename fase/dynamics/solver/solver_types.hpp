@@ -36,7 +36,6 @@ static_assert(sizeof(SolverMass) == 32);
 /// one impulse per pass.
 struct alignas(64) ContactBlock {
     std::uint32_t a[8], b[8];  ///< rows of SolverBody; b is always dynamic (or the last row)
-    std::uint32_t contact[8];  ///< index of the Contact; no_index in unused lanes
     float normal[3][8], tangent[3][8];
     float offset_a[3][8], offset_b[3][8];
     float x[4][8], y[4][8];

@@ -161,34 +161,42 @@ bool body_lists_are_right(const WorldState& s) {
                        [&](broad::Pair pair) { return alive(pair.a) && alive(pair.b); });
 }
 
-bool is_finite(const Contact& c) {
-    float sum = c.friction + c.restitution + c.twist_impulse + c.nearest + c.approach + c.reuse_distance;
-    for (const Vec3 v : {c.normal, c.tangent, c.offset_a, c.offset_b, c.first_normal, c.first_tangent, c.first_offset_a,
-                         c.first_offset_b, c.hit_offset_a, to_float(c.position_a), to_float(c.position_b)})
+bool is_finite(const dynamics::ContactManifold& m) {
+    float sum = m.friction + m.restitution + m.twist_impulse;
+    for (const Vec3 v :
+         {m.normal, m.tangent, m.offset_a, m.offset_b, m.first_tangent, m.first_offset_a, m.first_offset_b})
         sum += v.x + v.y + v.z;
     for (int i = 0; i < 4; ++i)
-        sum += c.x[i] + c.y[i] + c.separation[i] + c.first_separation[i] + c.impulse[i] + c.total_impulse[i];
-    for (const float impulse : c.friction_impulse) sum += impulse;
-    for (const Quat q : {c.rotation_a, c.rotation_b}) sum += q.x + q.y + q.z + q.w;
+        sum += m.x[i] + m.y[i] + m.separation[i] + m.first_separation[i] + m.impulse[i] + m.total_impulse[i];
+    for (const float impulse : m.friction_impulse) sum += impulse;
     return std::isfinite(sum);
+}
+
+bool manifolds_are_right(const WorldState& s, const Contact& c) {
+    const float reach = c.nearest + c.reuse_distance;
+    if (!std::isfinite(reach) || !is_finite(c.b_from_a) || !is_finite(c.rotation_a) || !is_finite(c.rotation_b))
+        return false;
+    return std::ranges::all_of(s.manifolds.of(c), [](const dynamics::ContactManifold& m) {
+        return m.count >= 1 && m.count <= 4 && is_finite(m) && is_unit(m.normal) && is_unit(m.tangent);
+    });
 }
 
 /// A contact belongs to its two colliders, or the next step ends it because one of them was removed or changed.
 bool contact_is_right(const WorldState& s, const Contact& c, broad::Pair pair, bool is_active) {
     if (c.collider_a != pair.a || c.collider_b != pair.b || !(pair.a < pair.b) || pair.b >= s.colliders.size() ||
-        c.body_a >= s.body_ids.size() || c.body_b >= s.body_ids.size() || c.count > 4)
+        c.body_a >= s.body_ids.size() || c.body_b >= s.body_ids.size() || c.body_a == c.body_b)
         return false;
     const bool current = is_current(s, c.collider_a, c.generation_a) && is_current(s, c.collider_b, c.generation_b);
     const bool changed = ((s.changes[pair.a] | s.changes[pair.b]) & edited) != 0;
     if (!current) return changed;
     const Collider &a = s.colliders[pair.a], &b = s.colliders[pair.b];
-    if (c.body_a != a.body || c.body_b != b.body || c.body_a == c.body_b) return false;
+    if (c.body_a != a.body || c.body_b != b.body) return false;
     if (c.sensor != (a.sensor || b.sensor) || c.sensor_is_b != b.sensor || (a.sensor && b.sensor)) return false;
     const BodyTraits &ta = s.bodies.traits[c.body_a], &tb = s.bodies.traits[c.body_b];
     if (is_active != (ta.motion_state == MotionState::Awake || tb.motion_state == MotionState::Awake)) return false;
-    if (changed) return is_finite(c) || ta.quarantined || tb.quarantined;  // the contacts of those end
+    if (changed) return manifolds_are_right(s, c) || ta.quarantined || tb.quarantined;  // the contacts of those end
     if (ta.kind != BodyKind::Dynamic && tb.kind != BodyKind::Dynamic && !c.sensor) return false;
-    return is_finite(c) && (c.count == 0 || (is_unit(c.normal) && is_unit(c.tangent)));
+    return manifolds_are_right(s, c);
 }
 
 /// Every pair is in one list and has one contact; all other contacts are free. The active pairs are sorted.
@@ -207,6 +215,8 @@ bool contacts_are_right(const WorldState& s) {
     if (std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end()) return false;
     for (const std::uint32_t contact : s.contacts_to_check)
         if (contact >= s.contacts.size()) return false;
+    if (std::ranges::any_of(s.free_contacts, [&](std::uint32_t free) { return s.contacts[free].capacity != 0; }))
+        return false;
     return std::all_of(uses.begin(), uses.end(), [](std::uint32_t n) { return n == 1; });
 }
 

@@ -121,6 +121,7 @@ struct WorldState {
     pairs::PairList resting;  ///< pairs without an awake body, in no order
     std::vector<dynamics::Contact> contacts;
     std::vector<std::uint32_t> free_contacts;
+    dynamics::ManifoldPool manifolds;             ///< of `contacts`
     std::vector<std::uint32_t> edited_colliders;  ///< the next step queries their pairs
     std::vector<std::uint32_t> bodies_to_wake;    ///< the next step wakes their islands before it finds pairs
     std::vector<std::uint32_t> bodies_let_go;     ///< sleepers whose contact ended: the stage "sleep" wakes them
@@ -138,7 +139,8 @@ struct WorldState {
     TaskRunner* tasks = nullptr;
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
     ContactGraph contact_graph;
-    pairs::BoxSets box_sets;  ///< fat boxes of colliders by motion state; edits reach them in the next step
+    dynamics::ConstraintColours colours;  ///< those that the manifolds have
+    pairs::BoxSets box_sets;              ///< fat boxes of colliders by motion state; edits reach them in the next step
     std::vector<std::uint8_t>
         set_of;                ///< by collider: 0 when its box is in no set, else 1 + the MotionState of the set
     std::string structure;     ///< Setup::structure
@@ -148,16 +150,18 @@ struct WorldState {
     pairs::PairSorter sorter;
     std::vector<float> sweep;         ///< by body: metres that a fast body may move in this step; 0 for slow bodies
     std::vector<std::uint8_t> marks;  ///< by body; all 0 between uses
+    std::vector<std::uint8_t> roles;  ///< by body, inside gather_constraints(): what contacts do to it
     std::vector<std::uint8_t> held;   ///< by body, valid for awake ones: a contact acted on it in this step
     std::vector<broad::Move> query_boxes;
     std::vector<broad::Pair> candidates;
-    std::vector<Aabb> previous_boxes;     ///< by collider, valid for those in `moved`: the fat box before this step
-    std::vector<std::uint32_t> moved;     ///< colliders that left their fat box in this step
-    std::vector<std::uint32_t> touching;  ///< contacts to solve in this step
-    std::vector<std::uint32_t> sensors;   ///< active contacts of sensors, which are collided after the bodies moved
-    std::vector<std::uint32_t> checked;   ///< resting contacts that this step collided
-    std::vector<std::uint8_t> reused;     ///< by active pair: the manifold of the last step was reused
-    std::vector<std::uint32_t> clamped;   ///< bodies whose speed was clamped before the step, ascending
+    std::vector<Aabb> previous_boxes;  ///< by collider, valid for those in `moved`: the fat box before this step
+    std::vector<std::uint32_t> moved;  ///< colliders that left their fat box in this step
+    std::vector<dynamics::Constraint> constraints;  ///< of this step: manifolds with points, in the order of `active`
+    std::vector<dynamics::ContactResult> results;   ///< of `constraints`
+    std::vector<std::uint32_t> sensors;  ///< active contacts of sensors, which are collided after the bodies moved
+    std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
+    std::vector<std::uint8_t> reused;    ///< by active pair: the manifold of the last step was reused
+    std::vector<std::uint32_t> clamped;  ///< bodies whose speed was clamped before the step, ascending
     std::vector<std::uint32_t> scratch;
     std::vector<std::uint32_t> woken_contacts;    ///< in update_pair_lists(): those that move to the active list
     std::vector<broad::Pair> woken_pairs;         ///< their pairs
@@ -229,8 +233,13 @@ void remove_resting(WorldState& state, std::uint32_t contact);
 void sort_by_pair(const WorldState& state, std::vector<std::uint32_t>& contacts);
 /// Call after the pair lists were replaced.
 void rebuild_contact_graph(WorldState& state);
-/// Sets friction and restitution of a contact from the materials of its colliders.
+/// Sets friction and restitution of a contact's manifolds from the materials of its colliders.
 void update_materials(WorldState& state, std::uint32_t contact);
+/// Lists the constraints of the active contacts, and the sensors among these. Frees the colours of manifolds that
+/// ended. `quarantined`: bodies whose contacts move nothing, because they end in the next step.
+void gather_constraints(WorldState& state, std::span<const std::uint32_t> quarantined = {});
+/// Takes the colours of all manifolds after a restore. Returns false when they contradict each other.
+[[nodiscard]] bool rebuild_colours(WorldState& state);
 
 /// Brings the boxes of all colliders that were edited since the last step into the sets. The first act of a step.
 void apply_edits(WorldState& state);
