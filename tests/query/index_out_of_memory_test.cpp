@@ -18,15 +18,21 @@ Aabb random_box(Random& random) {
     return {at, at + Vec3{1, 1, 1}};
 }
 
+template <class S> std::string_view name_of() {
+    if constexpr (broad::Structure<S>) return S::info.name;
+    return "on demand";
+}
+
 /// A program of edits and commits; each is tried again when memory ran out. Returns what the index then finds.
 template <class S> std::vector<int> play(long n, long& failures) {
+    const auto at = [n] { return std::string(name_of<S>()) + " at " + std::to_string(n); };
     Index<int, S> index;
     std::vector<typename Index<int, S>::Id> ids;
     ids.reserve(400);
     Random random(3);
     const auto commit = [&] {
         bool done = false;
-        EXPECT_TRUE(run_with_failing_allocation(n, [&] { done = index.commit(); })) << S::info.name << " at " << n;
+        EXPECT_TRUE(run_with_failing_allocation(n, [&] { done = index.commit(); })) << at();
         EXPECT_TRUE(done || an_allocation_failed);
         failures += an_allocation_failed ? 1 : 0;
         if (!done) {
@@ -57,26 +63,49 @@ template <class S> std::vector<int> play(long n, long& failures) {
         commit();
         EXPECT_EQ(index.structure().broken_invariant(), "");
     }
+    // A query of the default structure may build one; it throws before it calls back, and the next call works.
     std::vector<int> found;
+    const auto ask = [&](const auto& question) {
+        const std::size_t before = found.size();
+        if (run_with_failing_allocation(n, question)) {
+            failures += an_allocation_failed ? 1 : 0;
+            if (!an_allocation_failed) return;
+        } else {
+            ++failures;
+            found.resize(before);
+        }
+        found.resize(before);
+        question();
+    };
+    found.reserve(100'000);
     index.for_each([&](int value) { found.push_back(value); });
-    index.pairs([&](int a, int b) { found.push_back(1000 * a + b); });
-    index.awake_pairs([&](int a, int b) { found.push_back(1000 * a + b); });
-    index.overlapping(Aabb{{-3, -3, -3}, {3, 3, 3}}, [&](int value) { found.push_back(value); });
+    ask([&] { index.pairs(in_order, [&](int a, int b) { found.push_back(1000 * a + b); }); });
+    ask([&] { index.neighbours(in_order, 0.5f, [&](int a, int b) { found.push_back(1000 * a + b); }); });
+    ask([&] { index.awake_pairs([&](int a, int b) { found.push_back(1000 * a + b); }); });
+    ask([&] {
+        index.overlapping(in_order, Aabb{{-3, -3, -3}, {3, 3, 3}}, [&](int value) { found.push_back(value); });
+    });
+    ask([&] {
+        for (const auto& hit : index.nearest({0, 0, 0}, 5)) found.push_back(index.value(hit.id));
+    });
     return found;
 }
 
+template <class S> void fail_each_allocation() {
+    long none = 0;
+    const std::vector<int> right = play<S>(-1, none);
+    EXPECT_EQ(none, 0);
+    for (long n = 0;; ++n) {
+        ASSERT_LT(n, 3000);
+        long failures = 0;
+        ASSERT_EQ(play<S>(n, failures), right) << name_of<S>() << " at " << n;
+        if (failures == 0) break;
+    }
+}
+
 TEST(IndexOutOfMemory, changes_nothing_and_the_next_call_works) {
-    broad::for_each_structure([]<broad::Structure S>() {
-        long none = 0;
-        const std::vector<int> right = play<S>(-1, none);
-        EXPECT_EQ(none, 0);
-        for (long n = 0;; ++n) {
-            ASSERT_LT(n, 3000);
-            long failures = 0;
-            ASSERT_EQ(play<S>(n, failures), right) << S::info.name << " at " << n;
-            if (failures == 0) break;
-        }
-    });
+    fail_each_allocation<query::OnDemand>();
+    broad::for_each_structure([]<broad::Structure S>() { fail_each_allocation<S>(); });
 }
 
 }  // namespace

@@ -25,27 +25,28 @@ template <class S> Index<std::string, S> four() {
 
 using Names = std::vector<std::string>;
 
-/// Runs a test with four different kinds of structures: a list, a tree with boxes in several leaves, a dynamic tree,
-/// and one with own versions of most operations. The conformance tests cover the others.
-template <class F> void on_four_structures(F&& f) {
+/// Runs a test with the default and with four different kinds of structures: a list, a tree with boxes in several
+/// leaves, a dynamic tree, and one with own versions of most operations. The conformance tests cover the others.
+template <class F> void on_several_structures(F&& f) {
     const auto traced = [&]<broad::Structure S>() {
         SCOPED_TRACE(S::info.name);
         f.template operator()<S>();
     };
+    f.template operator()<query::OnDemand>();
     broad::for_each_structure(
         traced, broad::StructureList<broad::BruteForce, broad::Quadtree, broad::DynamicBvh, broad::WideBvh>{});
 }
 
 TEST(Index, VisitsPairsOnceInOrder) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         auto index = four<S>();
         index.insert(cube(0.5f), "e");
         index.commit();
         Names pairs;
-        index.pairs([&](std::string& a, const std::string& b) { pairs.push_back(a + b); });
+        index.pairs(in_order, [&](std::string& a, const std::string& b) { pairs.push_back(a + b); });
         EXPECT_EQ(pairs, (Names{"ab", "ae", "be"}));
         Names with_ids;
-        index.pairs([&](auto a, std::string& left, auto b, std::string& right) {
+        index.pairs(in_order, [&](auto a, std::string& left, auto b, std::string& right) {
             EXPECT_LT(a.index, b.index);
             with_ids.push_back(left + right);
         });
@@ -54,7 +55,7 @@ TEST(Index, VisitsPairsOnceInOrder) {
 }
 
 TEST(Index, AllowsMovesInPairCallbacks) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         auto index = four<S>();
         index.pairs([&](auto, auto&, auto b, auto&) { EXPECT_TRUE(index.move(b, cube(5))); });
         index.commit();
@@ -65,7 +66,7 @@ TEST(Index, AllowsMovesInPairCallbacks) {
 }
 
 TEST(Index, SkipsPairsOfTwoSleepingValues) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         Index<int, S> index;
         std::vector<typename Index<int, S>::Id> ids;
         for (int i = 0; i < 6; ++i) ids.push_back(index.insert(cube(static_cast<float>(i)), i));
@@ -80,7 +81,7 @@ TEST(Index, SkipsPairsOfTwoSleepingValues) {
 }
 
 TEST(Index, FindsPairsWithAnotherIndex) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         auto players = four<S>();
         Index<int> walls;
         walls.insert(cube(2), 0);
@@ -100,15 +101,16 @@ TEST(Index, FindsPairsWithAnotherIndex) {
 }
 
 TEST(Index, FindsValuesByPosition) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         const auto index = four<S>();
         Names found;
         const auto keep = [&](const std::string& name) { found.push_back(name); };
-        index.overlapping(Aabb{{1, 0, 0}, {2.5f, 1, 1}}, keep);
+        index.overlapping(in_order, Aabb{{1, 0, 0}, {2.5f, 1, 1}}, keep);
         EXPECT_EQ(std::exchange(found, {}), (Names{"a", "b", "c"}));
         index.overlapping(query::SphereRegion({4, 0.5, 0.5}, 0.5f), keep);
         EXPECT_EQ(std::exchange(found, {}), Names{"c"});
         index.at({1, 0.5, 0.5}, keep);
+        std::sort(found.begin(), found.end());
         EXPECT_EQ(std::exchange(found, {}), (Names{"a", "b"}));
         index.for_each([&](auto id, const std::string& name) { found.push_back(name + std::to_string(id.index)); });
         EXPECT_EQ(std::exchange(found, {}), (Names{"a0", "b1", "c2", "d3"}));
@@ -118,6 +120,9 @@ TEST(Index, FindsValuesByPosition) {
         EXPECT_EQ(near[0].distance, 0.5f);
         EXPECT_EQ(index.value(near[1].id), "b");
         EXPECT_EQ(index.nearest({4, 0.5, 0.5}, 9, 1).size(), 1u);
+        const auto not_c = index.nearest({4, 0.5, 0.5}, 1, 100, [](const std::string& name) { return name != "c"; });
+        ASSERT_EQ(not_c.size(), 1u);
+        EXPECT_EQ(index.value(not_c[0].id), "b");
         Frustum ahead;  // x from 2 to 4
         for (std::size_t side = 0; side < 6; ++side) {
             Vec3d normal;
@@ -131,7 +136,7 @@ TEST(Index, FindsValuesByPosition) {
 }
 
 TEST(Index, CastsRaysAgainstBoxesOrExactShapes) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         const auto index = four<S>();
         const Ray ray{{-3, 0.5, 0.5}, {1, 0, 0}, 100};
         const auto first = index.cast_ray(ray);
@@ -154,7 +159,7 @@ TEST(Index, CastsRaysAgainstBoxesOrExactShapes) {
 }
 
 TEST(Index, VisitsLeavesWithTheirValues) {
-    on_four_structures([]<class S>() {
+    on_several_structures([]<class S>() {
         auto index = four<S>();
         index.for_each_leaf([](auto leaf) {
             for (std::size_t i = 0; i < leaf.size(); ++i)

@@ -1,0 +1,74 @@
+#pragma once
+/// Finds all pairs of boxes within a radius, frame after frame: the fixed-radius near neighbours.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fase/broad/row_grid.hpp"
+#include "fase/core/tasks.hpp"
+#include "fase/query/on_demand.hpp"
+
+namespace fase::query {
+
+/// A box in two rows of four floats, which compilers turn into vectors.
+struct alignas(16) PaddedBox {
+    float lo[4] = {}, hi[4] = {};
+
+    PaddedBox() = default;
+    explicit PaddedBox(const Aabb& box) : lo{box.lo.x, box.lo.y, box.lo.z, 0}, hi{box.hi.x, box.hi.y, box.hi.z, 0} {}
+};
+/// Returns the square of the distance between two boxes, in m²; 0 when they touch. In float.
+[[nodiscard]] inline float squared_distance(const PaddedBox& a, const PaddedBox& b) {
+    float squares[4];
+    for (int axis = 0; axis < 4; ++axis) {
+        const float before = b.lo[axis] - a.hi[axis], behind = a.lo[axis] - b.hi[axis];
+        const float gap = before > behind ? before : behind;
+        const float outside = gap > 0 ? gap : 0;
+        squares[axis] = outside * outside;
+    }
+    return squares[0] + squares[1] + squares[2];
+}
+
+/// A RowGrid of boxes that are larger by half of the radius on each side, and an exact test of the pairs that it finds.
+/// The boxes have numbers of their own, in the order of the grid's rows, so that the test of a pair reads memory near
+/// that of the pair before; random access would take longer than the search. They are numbered anew when many boxes
+/// were inserted, or when motion has mixed them.
+class NeighbourGrid {
+public:
+    /// Notes that boxes changed. Allocates before it changes anything.
+    void commit(std::span<const broad::Proxy> changed, std::size_t proxies);
+    /// Replaces `out` by the pairs of boxes at most `radius` metres apart, in float, each once, smaller proxy first.
+    /// May throw std::bad_alloc; the next call works. The pairs and their order do not depend on the number of threads.
+    void find(const IndexedBoxes& in, float radius, TaskRunner* tasks, std::vector<broad::Pair>& out);
+    [[nodiscard]] bool is_built() const { return built_; }
+    [[nodiscard]] std::size_t bytes() const;
+
+private:
+    using Number = std::uint32_t;
+    void clear();
+    void update(const IndexedBoxes& in, float radius, TaskRunner* tasks);
+    void build(const IndexedBoxes& in);
+    void number_by_rows(const IndexedBoxes& in);
+    void follow(const IndexedBoxes& in, TaskRunner* tasks);
+    void insert_and_erase(const IndexedBoxes& in);
+    void set_box(Number number, const Aabb& box);
+    void keep_near(float limit, TaskRunner* tasks, std::vector<broad::Pair>& pairs);
+    void watch_locality(std::span<const broad::Pair> pairs);
+
+    broad::RowGrid grid_;
+    std::vector<Number> number_of_;       // by proxy; no_index: not in the grid
+    std::vector<broad::Proxy> proxy_of_;  // by number
+    std::vector<PaddedBox> boxes_;        // by number
+    std::vector<Aabb> grown_;             // by number
+    std::vector<Number> free_;
+    std::vector<broad::Proxy> pending_;
+    std::vector<Number> moved_;
+    std::vector<std::uint8_t> is_pending_;  // by proxy
+    float radius_ = 0;
+    double spread_ = 0;  // mean distance of the numbers of a pair when they were given; 0: not known yet
+    std::size_t inserted_ = 0;
+    bool built_ = false, mixed_ = false, used_ = false;
+    std::uint32_t idle_ = 0;
+};
+
+}  // namespace fase::query
