@@ -43,6 +43,7 @@
 #include "fase/geometry/shape_description.hpp"
 #include "fase/geometry/shapes.hpp"
 #include "fase/math/mat3.hpp"
+#include "fase/math/interpolate.hpp"
 #include "fase/math/pose.hpp"
 #include "fase/math/quat.hpp"
 #include "fase/math/transform_d.hpp"

@@ -7,6 +7,7 @@
 #include "fase/world/events.hpp"
 #include "fase/world/id_map.hpp"
 #include "fase/world/query.hpp"
+#include "fase/world/fixed_step.hpp"
 #include "fase/world/settings.hpp"
 #include "fase/world/stats.hpp"
 #include "fase/world/world.hpp"

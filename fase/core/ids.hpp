@@ -2,6 +2,7 @@
 /// Generational ids: stale, foreign and random ids are detected.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +19,13 @@ template <class Tag> struct Id {
     std::uint16_t owner = 0;
     friend constexpr bool operator==(Id, Id) = default;
 };
+
+/// Returns a well-mixed hash: std::unordered_map<BodyId, Score> works.
+template <class Tag> [[nodiscard]] constexpr std::size_t hash_of(Id<Tag> id) noexcept {
+    std::uint64_t bits = std::uint64_t{id.index} << 32 | std::uint64_t{id.generation} << 16 | id.owner;
+    bits = (bits ^ bits >> 32) * 0xd6e8feb86659fd93u;
+    return static_cast<std::size_t>(bits ^ bits >> 32);
+}
 
 /// Issues ids over dense slots 0..size()-1 and checks whether an id is valid. Stores no values: the user keeps them in
 /// arrays indexed by `id.index`. Reuses free slots with the next generation, last freed first; retires a slot after
@@ -154,3 +162,7 @@ private:
 };
 
 }  // namespace fase
+
+template <class Tag> struct std::hash<fase::Id<Tag>> {
+    [[nodiscard]] std::size_t operator()(fase::Id<Tag> id) const noexcept { return fase::hash_of(id); }
+};

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <set>
+#include <unordered_map>
 #include <vector>
 
 #include "fase/core/random.hpp"
@@ -174,6 +176,20 @@ TEST(IdPool, agrees_with_a_plain_list_over_many_random_operations) {
         }
         ASSERT_EQ(pool.count(), count);
     }
+}
+
+TEST(Ids, are_keys_of_hash_maps) {
+    IdPool<Thing> pool(7);
+    std::unordered_map<Id<Thing>, int> number;
+    std::set<std::size_t> low_bits;
+    for (int i = 0; i < 1000; ++i) {
+        const Id<Thing> id = pool.add();
+        number[id] = i;
+        low_bits.insert(std::hash<Id<Thing>>{}(id) % 1024);
+    }
+    EXPECT_EQ(number.size(), 1000u);
+    EXPECT_EQ(number.at(*pool.id_at(17)), 17);
+    EXPECT_GT(low_bits.size(), 500u) << "hashes of ids in a row fall into many buckets";
 }
 
 }  // namespace
