@@ -19,8 +19,8 @@ Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef
 
 /// Adds a body after reserve_body(). `shape` is that of the body without colliders.
 BodyId make_body(WorldState& state, const BodyDef& def, const BodyShape& shape) {
-    const BodyId id = state.body_ids.add();
-    state.bodies.resize(state.body_ids.size());
+    const BodyId id = state.bodies.ids.add();
+    state.bodies.resize(state.bodies.ids.size());
     dynamics::BodyTraits traits;
     traits.kind = def.kind;
     traits.locks = bits_of(def.locks);
@@ -45,8 +45,8 @@ BodyId make_body(WorldState& state, const BodyDef& def, const BodyShape& shape) 
     state.bodies.motion[id.index] = motion;
     state.bodies.forces[id.index] = {};
     const std::span<const std::uint32_t> one(&id.index, 1);
-    if (traits.motion_state == MotionState::Awake) state.awake_added.push_back(id.index);
-    if (traits.motion_state == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
+    if (traits.motion_state == MotionState::Awake) state.bodies.awake_added.push_back(id.index);
+    if (traits.motion_state == MotionState::Asleep) state.bodies.asleep.add(one, state.bodies.motion);
     set_shape(state, id.index, shape);
     if (def.kind != BodyKind::Static) {  // BodyDef gives the velocity of the centre of mass
         state.bodies.motion[id.index].linear_velocity = def.linear_velocity;
@@ -65,19 +65,19 @@ void unlink_collider(WorldState& state, std::uint32_t index) {
 /// Removes a collider from everything except the collider list of its body.
 void drop_collider(WorldState& state, std::uint32_t index) {
     release_shape(state, state.colliders[index].shape);
-    state.collider_ids.remove(*state.collider_ids.id_at(index));
-    mark_edited(state, index);
-    state.removed_any = true;
+    state.colliders.ids.remove(*state.colliders.ids.id_at(index));
+    mark_edited(state.broad_phase, state.query, index);
+    state.broad_phase.removed_any = true;
 }
 
 /// Makes a collider after reserve_colliders(). It is not yet in the list of its body, and has no box.
 ColliderId new_collider(WorldState& state, std::uint32_t body, std::uint32_t shared, const ColliderDef& def) {
-    const ColliderId id = state.collider_ids.add();
-    const std::size_t slots = state.collider_ids.size();
-    state.colliders.resize(slots);
-    state.boxes.resize(slots);
-    state.changes.resize(slots, 0);
-    state.set_of.resize(slots, 0);
+    const ColliderId id = state.colliders.ids.add();
+    const std::size_t slots = state.colliders.ids.size();
+    state.colliders.all.resize(slots);
+    state.broad_phase.boxes.resize(slots);
+    state.broad_phase.changes.resize(slots, 0);
+    state.broad_phase.set_of.resize(slots, 0);
     Collider& collider = state.colliders[id.index];
     collider = {};
     collider.body = body;
@@ -212,7 +212,7 @@ Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const Co
         reserve_colliders(state, 1);
         reserve_wakes(state, 1);
         const std::uint32_t shared = share_shape(state, shape);
-        disturb(state, body.index);
+        disturb(state.bodies, body.index);
         return make_collider(state, body.index, shared, def, *complete);
     });
 }
@@ -228,7 +228,7 @@ Result<void> World::remove_collider(ColliderId collider) {
         const auto rest = checked_shape_of(state, edit, pose, "World::remove_collider: ");
         if (!rest) return rest.error();
         reserve_wakes(state, 1);
-        disturb(state, body);
+        disturb(state.bodies, body);
         unlink_collider(state, collider.index);
         drop_collider(state, collider.index);
         set_shape(state, body, *rest);
@@ -247,13 +247,13 @@ Result<void> World::remove_body(BodyId body) {
             c = next;
         }
         const std::span<const std::uint32_t> one(&body.index, 1);
-        remove_awake(state, body.index);
-        state.asleep.remove(one);
-        std::erase(state.bodies_to_wake, body.index);
-        std::erase(state.bodies_let_go, body.index);
-        state.exclusions.remove_all_of(body.index);
+        remove_awake(state.bodies, body.index);
+        state.bodies.asleep.remove(one);
+        std::erase(state.bodies.to_wake, body.index);
+        std::erase(state.bodies.let_go, body.index);
+        state.bodies.exclusions.remove_all_of(body.index);
         state.bodies.traits[body.index] = {};
-        state.body_ids.remove(body);
+        state.bodies.ids.remove(body);
         return {};
     });
 }

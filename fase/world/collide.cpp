@@ -3,8 +3,9 @@
 
 #include "fase/core/detail/prefetch.hpp"
 #include "fase/narrow/dispatch.hpp"
+#include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/manifolds.hpp"
-#include "fase/world/detail/state.hpp"
+#include "fase/world/detail/stages.hpp"
 
 namespace fase {
 
@@ -64,18 +65,28 @@ WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& p
     return world;
 }
 
+/// What update_contact() reads; it writes the contact and its manifolds.
+struct CollideTables {
+    const Settings& settings;
+    const BodyTable& bodies;
+    const ColliderTable& colliders;
+    const std::vector<float>& sweep;
+    ContactTable& contacts;
+};
+
 /// Updates one contact. Returns true when its manifolds were reused.
-bool update_contact(WorldState& state, Contact& c) {
-    const BodyMotion& a = state.bodies.motion[c.body_a];
-    const BodyMotion& b = state.bodies.motion[c.body_b];
+bool update_contact(const CollideTables& tables, Contact& c) {
+    const auto& [settings, bodies, colliders, sweep, contacts] = tables;
+    const BodyMotion& a = bodies.motion[c.body_a];
+    const BodyMotion& b = bodies.motion[c.body_b];
     const PairMotion motion = c.manifolds > 0 ? PairMotion(c, a, b) : PairMotion();
-    if (c.reusable && reuse_manifolds(c, state.manifolds.of(c), motion,
-                                      std::min(state.settings.contact_reuse_distance, c.reuse_distance)))
+    if (c.reusable && reuse_manifolds(c, contacts.manifolds.of(c), motion,
+                                      std::min(settings.contact_reuse_distance, c.reuse_distance)))
         return true;
-    const Collider& ca = state.colliders[c.collider_a];
-    const Collider& cb = state.colliders[c.collider_b];
-    const SharedShape& shape_a = state.shapes[ca.shape];
-    const SharedShape& shape_b = state.shapes[cb.shape];
+    const Collider& ca = colliders[c.collider_a];
+    const Collider& cb = colliders[c.collider_b];
+    const SharedShape& shape_a = colliders.shapes[ca.shape];
+    const SharedShape& shape_b = colliders.shapes[cb.shape];
     const Vec3d exact_b_from_a = b.position - a.position;
     const Vec3 b_from_a = to_float(exact_b_from_a);
     // The smaller shape sets the scale; a half-space has no size.
@@ -83,12 +94,11 @@ bool update_contact(WorldState& state, Contact& c) {
     const float radius_b = shape_b.inner_radius > 0 ? shape_b.inner_radius : Aabb::infinity;
     const float scale = std::min({radius_a, radius_b, 1e6f});
     c.reuse_distance = 0.1f * scale;
-    const LocalPose pose_a = collider_pose(state, ca), pose_b = collider_pose(state, cb);
+    const LocalPose pose_a = collider_pose(bodies, ca), pose_b = collider_pose(bodies, cb);
     const NearbyFrames frames(pose_a, pose_b, shape_a.shape, shape_b.shape, exact_b_from_a);
-    const float margin =
-        c.sensor ? 0.0f : state.settings.speculative_distance + state.sweep[c.body_a] + state.sweep[c.body_b];
+    const float margin = c.sensor ? 0.0f : settings.speculative_distance + sweep[c.body_a] + sweep[c.body_b];
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, frames.b_in_a, margin);
-    ContactManifold& m = state.manifolds.places(c)[0];
+    ContactManifold& m = contacts.manifolds.places(c)[0];
     store_manifold(c, m, in_world_axes(manifold, pose_a, pose_b, frames, is_half_space(shape_a.shape), b_from_a), a, b,
                    motion, std::min(0.05f, 0.2f * scale));
     c.reusable = manifold.count >= 3 && !c.sensor;  // sensors report in the step in which shapes part
@@ -98,58 +108,63 @@ bool update_contact(WorldState& state, Contact& c) {
 }
 
 /// Loads what update_contact() will read of the active contacts after number i.
-void prefetch_contact(const WorldState& state, std::size_t i, std::size_t end) {
+void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
     constexpr std::size_t near = 4, far = 8;
-    if (i + far < end) detail::prefetch(state.contacts[state.active.values[i + far]]);
+    if (i + far < end) detail::prefetch(contacts[contacts.active.values[i + far]]);
     if (i + near >= end) return;
-    const Contact& next = state.contacts[state.active.values[i + near]];
-    detail::prefetch(state.manifolds[next.first_manifold]);
-    detail::prefetch(state.bodies.motion[next.body_a]);
-    detail::prefetch(state.bodies.motion[next.body_b]);
+    const Contact& next = contacts[contacts.active.values[i + near]];
+    detail::prefetch(contacts.manifolds[next.first_manifold]);
+    detail::prefetch(bodies.motion[next.body_a]);
+    detail::prefetch(bodies.motion[next.body_b]);
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
-void check_resting(WorldState& state) {
-    state.checked.clear();
-    state.checked.swap(state.contacts_to_check);
-    std::erase_if(state.checked, [&](std::uint32_t c) { return state.contact_graph.resting_at(c) == no_index; });
-    sort_by_pair(state, state.checked);
-    parallel_ranges(*state.tasks, state.checked.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) update_contact(state, state.contacts[state.checked[i]]);
+void check_resting(const CollideTables& tables, std::vector<std::uint32_t>& checked, TaskRunner& tasks) {
+    ContactTable& contacts = tables.contacts;
+    checked.clear();
+    checked.swap(contacts.to_check);
+    std::erase_if(checked, [&](std::uint32_t c) { return contacts.graph.resting_at(c) == no_index; });
+    sort_by_pair(contacts, checked);
+    parallel_ranges(tasks, checked.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) update_contact(tables, contacts[checked[i]]);
     });
 }
 
 }  // namespace
 
-void collide(WorldState& state, float) {
-    check_resting(state);
-    state.reused.assign(state.active.size(), 0);
-    parallel_ranges(*state.tasks, state.active.size(), 64, [&](std::size_t begin, std::size_t end) {
+void collide(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
+             ContactTable& contacts, Constraints& constraints) {
+    const CollideTables tables{context.settings, bodies, colliders, moved.sweep, contacts};
+    check_resting(tables, constraints.checked, context.tasks);
+    constraints.reused.assign(contacts.active.size(), 0);
+    parallel_ranges(context.tasks, contacts.active.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            prefetch_contact(state, i, end);
-            Contact& c = state.contacts[state.active.values[i]];
-            if (!c.sensor) state.reused[i] = update_contact(state, c) ? 1 : 0;
+            prefetch_contact(bodies, contacts, i, end);
+            Contact& c = contacts[contacts.active.values[i]];
+            if (!c.sensor) constraints.reused[i] = update_contact(tables, c) ? 1 : 0;
         }
     });
-    gather_constraints(state);
-    StepReport& report = state.report;
-    report.manifolds += static_cast<std::uint32_t>(state.constraints.size());
-    for (std::size_t i = 0; i < state.active.size(); ++i) {
-        const Contact& c = state.contacts[state.active.values[i]];
+    gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
+    StepReport& report = context.report;
+    report.manifolds += static_cast<std::uint32_t>(constraints.all.size());
+    for (std::size_t i = 0; i < contacts.active.size(); ++i) {
+        const Contact& c = contacts[contacts.active.values[i]];
         if (c.sensor) continue;
-        report.manifolds_reused += state.reused[i];
+        report.manifolds_reused += constraints.reused[i];
         report.contact_points += c.points;
     }
 }
 
-void collide_sensors(WorldState& state) {
-    parallel_ranges(*state.tasks, state.sensors.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) update_contact(state, state.contacts[state.sensors[i]]);
+void collide_sensors(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders,
+                     const Moved& moved, const Constraints& constraints, ContactTable& contacts) {
+    const CollideTables tables{context.settings, bodies, colliders, moved.sweep, contacts};
+    parallel_ranges(context.tasks, constraints.sensors.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) update_contact(tables, contacts[constraints.sensors[i]]);
     });
-    for (const std::uint32_t index : state.sensors) {
-        const Contact& c = state.contacts[index];
-        state.report.manifolds += c.manifolds;
-        state.report.contact_points += c.points;
+    for (const std::uint32_t index : constraints.sensors) {
+        const Contact& c = contacts[index];
+        context.report.manifolds += c.manifolds;
+        context.report.contact_points += c.points;
     }
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "fase/world/detail/state.hpp"
+#include "fase/world/detail/stages.hpp"
 
 namespace fase {
 
@@ -10,39 +10,50 @@ using dynamics::Contact;
 
 namespace {
 
-ContactEvent ids_of(const WorldState& state, const Contact& c) {
-    return {{c.collider_a, c.generation_a, state.collider_ids.owner()},
-            {c.collider_b, c.generation_b, state.collider_ids.owner()}};
+/// What publish_contact() reads and writes.
+struct EventTables {
+    const Settings& settings;
+    const ColliderTable& colliders;
+    const Constraints& constraints;
+    BodyTable& bodies;
+    ContactTable& contacts;
+    Events& events;
+};
+
+ContactEvent ids_of(const ColliderTable& colliders, const Contact& c) {
+    return {{c.collider_a, c.generation_a, colliders.ids.owner()},
+            {c.collider_b, c.generation_b, colliders.ids.owner()}};
 }
 
 /// Hysteresis: touching begins within the slop and ends beyond twice the slop, so that a resting contact does not
 /// flicker.
-bool touches(const WorldState& state, const Contact& c, float nearest, bool pushes) {
+bool touches(float slop, const Contact& c, float nearest, bool pushes) {
     if (c.manifolds == 0) return false;
     if (c.sensor) return nearest <= 0;
-    return pushes || nearest <= (c.touching ? 2 : 1) * state.settings.linear_slop;
+    return pushes || nearest <= (c.touching ? 2 : 1) * slop;
 }
 
 /// Publishes what happened at one contact; its constraints begin at number `first`.
-void publish_contact(WorldState& state, Contact& c, std::size_t first) {
+void publish_contact(const EventTables& tables, Contact& c, std::size_t first) {
+    const auto& [settings, colliders, constraints, bodies, contacts, events] = tables;
     float nearest = Aabb::infinity, approach = 0, impulse = 0;
     bool pushes = false;
     std::size_t hardest = first;
     for (std::size_t i = first; i < first + c.manifolds; ++i) {
-        const dynamics::ContactResult& result = state.results[i];
+        const dynamics::ContactResult& result = constraints.results[i];
         nearest = std::min(nearest, result.nearest);
         if (!result.pushes) continue;
         pushes = true;
         impulse += result.impulse;
         approach = std::max(approach, result.approach);
-        if (result.impulse > state.results[hardest].impulse) hardest = i;
+        if (result.impulse > constraints.results[hardest].impulse) hardest = i;
     }
-    set_touching(state, c, touches(state, c, nearest, pushes));
-    if (!pushes || !(approach > state.settings.restitution_threshold)) return;
-    const ContactEvent ids = ids_of(state, c);
-    const Vec3d place = state.bodies.motion[c.body_a].position + to_double(state.results[hardest].hit_offset_a);
-    state.events.hits.push_back(
-        {ids.a, ids.b, place, state.manifolds[state.constraints[hardest].index].normal, approach, impulse});
+    set_touching(bodies, colliders, events, c, touches(settings.linear_slop, c, nearest, pushes));
+    if (!pushes || !(approach > settings.restitution_threshold)) return;
+    const ContactEvent ids = ids_of(colliders, c);
+    const Vec3d place = bodies.motion[c.body_a].position + to_double(constraints.results[hardest].hit_offset_a);
+    events.hits.push_back(
+        {ids.a, ids.b, place, contacts.manifolds[constraints.all[hardest].index].normal, approach, impulse});
 }
 
 template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
@@ -51,18 +62,21 @@ template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
 
 }  // namespace
 
-void publish_events(WorldState& state) {
-    Events& events = state.events;
-    for (const std::uint32_t index : state.checked)  // one that woke in this step is in the active list now
-        if (Contact& c = state.contacts[index]; state.contact_graph.resting_at(index) != no_index)
-            set_touching(state, c, touches(state, c, c.nearest, false));
+void publish_events(const Settings& settings, const ColliderTable& colliders, const Constraints& constraints,
+                    BodyTable& bodies, ContactTable& contacts, Events& events) {
+    const auto set_touching_now = [&](Contact& c) {
+        set_touching(bodies, colliders, events, c, touches(settings.linear_slop, c, c.nearest, false));
+    };
+    for (const std::uint32_t index : constraints.checked)  // one that woke in this step is in the active list now
+        if (Contact& c = contacts[index]; contacts.graph.resting_at(index) != no_index) set_touching_now(c);
+    const EventTables tables{settings, colliders, constraints, bodies, contacts, events};
     std::size_t first = 0;
-    for (const std::uint32_t index : state.active.values) {
-        Contact& c = state.contacts[index];
+    for (const std::uint32_t index : contacts.active.values) {
+        Contact& c = contacts[index];
         if (c.sensor) {
-            set_touching(state, c, touches(state, c, c.nearest, false));
+            set_touching_now(c);
         } else {
-            publish_contact(state, c, first);
+            publish_contact(tables, c, first);
             first += c.manifolds;
         }
     }

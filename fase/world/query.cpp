@@ -29,7 +29,7 @@ RayHit ray_hit(const WorldState& state, const Ray& ray, const Nearest& nearest, 
 }
 
 std::optional<narrow::RayOnShape> exact_hit(const WorldState& state, const Ray& ray, std::uint32_t collider) {
-    return narrow::cast_ray(shape_of(state, collider), world_pose(state, state.colliders[collider]), ray);
+    return narrow::cast_ray(shape_of(state, collider), world_pose(state.bodies, state.colliders[collider]), ray);
 }
 
 /// Returns the search distance: the ray's length, or the distance of the nearest hit so far.
@@ -40,7 +40,7 @@ float limit_of(const Ray& ray, const Nearest& nearest) {
 std::optional<RayHit> nearest_on(const WorldState& state, const Ray& ray, const QueryFilter& filter) {
     Nearest nearest;
     Vec3 normal;
-    visit_along(state, ray, {}, {}, [&](std::uint32_t collider, float entry) {
+    visit_along(state.query, ray, {}, {}, [&](std::uint32_t collider, float entry) {
         if (!passes_filter(state, filter, collider)) return limit_of(ray, nearest);
         if (const auto hit = exact_hit(state, ray, collider)) {
             // A hit never counts before the entry into its box, so rounding cannot make the result depend on the order
@@ -77,7 +77,7 @@ Result<bool> any_hit(const World& world, const Ray& ray, const QueryFilter& filt
     if (!is_ray(ray)) return invalid_ray(ray, "any_hit: ray");
     return run_query<Result<bool>>(world, "any_hit", [&](const WorldState& state) -> Result<bool> {
         bool any = false;
-        visit_along(state, ray, {}, {}, [&](std::uint32_t collider, float) {
+        visit_along(state.query, ray, {}, {}, [&](std::uint32_t collider, float) {
             any = passes_filter(state, filter, collider) && exact_hit(state, ray, collider);
             return any ? -1.0f : ray.length;
         });
@@ -93,7 +93,7 @@ Result<void> cast_ray_all(const World& world, const Ray& ray, const QueryFilter&
             Vec3 normal;
         };
         std::vector<Entry> hits;
-        visit_along(state, ray, {}, {}, [&](std::uint32_t collider, float) {
+        visit_along(state.query, ray, {}, {}, [&](std::uint32_t collider, float) {
             if (passes_filter(state, filter, collider))
                 if (const auto hit = exact_hit(state, ray, collider))
                     hits.push_back({{hit->distance, collider}, hit->normal});
@@ -139,13 +139,13 @@ Result<std::optional<ShapeHit>> cast_shape(const World& world, const Shape& shap
         const Aabb swept = bounds_around_position(shape, pose);
         Nearest nearest;
         narrow::ShapeOnShape touch;
-        visit_along(state, ray, swept.lo, swept.hi, [&](std::uint32_t collider, float entry) {
+        visit_along(state.query, ray, swept.lo, swept.hi, [&](std::uint32_t collider, float entry) {
             if (!passes_filter(state, filter, collider)) return limit_of(ray, nearest);
             // Casts a little beyond the nearest hit: a shape that is clearly farther ends after its first distance, and
             // one that may be as near is cast with full accuracy.
             const float to = std::min(length, float_above(nearest.distance * (1 + 1e-6) + 1e-3));
             const auto hit = narrow::cast_shape(shape, pose, direction, to, shape_of(state, collider),
-                                                world_pose(state, state.colliders[collider]));
+                                                world_pose(state.bodies, state.colliders[collider]));
             if (hit) {
                 const Nearest here{std::max(hit->distance, double(entry)), collider};
                 if (here < nearest) {

@@ -13,7 +13,8 @@ namespace {
 
 bool contains_point(const WorldState& state, std::uint32_t collider, Vec3d point) {
     const Ray ray{point, {0, -1, 0}, 0};
-    return narrow::cast_ray(shape_of(state, collider), world_pose(state, state.colliders[collider]), ray).has_value();
+    return narrow::cast_ray(shape_of(state, collider), world_pose(state.bodies, state.colliders[collider]), ray)
+        .has_value();
 }
 
 /// Returns the smallest dot(direction, point) of a box. Axes with direction 0 give 0, so that an unbounded box gives no
@@ -27,7 +28,7 @@ double min_along(Vec3d direction, const Aabb& box) {
 
 bool overlaps_box(const WorldState& state, std::uint32_t collider, const Aabb& box) {
     const Shape& shape = shape_of(state, collider);
-    const Pose pose = world_pose(state, state.colliders[collider]);
+    const Pose pose = world_pose(state.bodies, state.colliders[collider]);
     if (std::holds_alternative<HalfSpace>(shape)) {
         const Vec3d up = rotate(normalized(to_double(pose.rotation)), Vec3d{0, 1, 0});
         return min_along(up, box) <= dot(up, pose.position);
@@ -65,7 +66,7 @@ enum class View { Outside, Partly, Inside };
 /// `frustum_bounds`: bounds(frustum).
 View view_of(const WorldState& state, std::uint32_t collider, const Frustum& frustum, const Aabb& frustum_bounds) {
     const Shape& shape = shape_of(state, collider);
-    const Pose pose = world_pose(state, state.colliders[collider]);
+    const Pose pose = world_pose(state.bodies, state.colliders[collider]);
     if (!overlaps(frustum_bounds, bounds(shape, pose))) return View::Outside;
     View view = View::Inside;
     for (const Frustum::Side& side : frustum.sides) {
@@ -88,7 +89,7 @@ struct Near {
 
 Near distance_to(const WorldState& state, std::uint32_t collider, Vec3d point) {
     if (contains_point(state, collider, point)) return {0, collider, point};
-    const Pose pose = world_pose(state, state.colliders[collider]);
+    const Pose pose = world_pose(state.bodies, state.colliders[collider]);
     const narrow::Distance gap =
         narrow::signed_distance(shape_of(state, collider), Sphere{0}, exactly_relative(pose, {point, {}}));
     const Vec3d nearest = pose.position + rotate(normalized(to_double(pose.rotation)), gap.on_a);
@@ -101,7 +102,7 @@ Result<void> collect(const World& world, const char* where, const Aabb& box, con
                      std::vector<Found>& out, const F& matches) {
     return run_query<Result<void>>(world, where, [&](const WorldState& state) -> Result<void> {
         std::vector<std::uint32_t> colliders;
-        visit_overlapping(state, box, [&](std::uint32_t collider) {
+        visit_overlapping(state.query, box, [&](std::uint32_t collider) {
             if (passes_filter(state, filter, collider) && matches(state, collider)) colliders.push_back(collider);
             return true;
         });
@@ -117,7 +118,7 @@ Result<void> overlapping(const World& world, const Shape& shape, const Pose& pos
     if (auto checked = check_placed(shape, pose, "overlapping"); !checked) return checked;
     return collect(world, "overlapping", bounds(shape, pose), filter, out,
                    [&](const WorldState& state, std::uint32_t collider) {
-                       const Pose other = world_pose(state, state.colliders[collider]);
+                       const Pose other = world_pose(state.bodies, state.colliders[collider]);
                        return narrow::overlaps(shape_of(state, collider), shape, exactly_relative(other, pose));
                    });
 }
@@ -141,7 +142,7 @@ Result<void> seen_by(const World& world, const Frustum& frustum, const QueryFilt
     return run_query<Result<void>>(world, "seen_by", [&](const WorldState& state) -> Result<void> {
         const Aabb box = bounds(frustum);
         std::vector<std::uint32_t> all, cut;
-        visit_in_frustum(state, frustum, [&](std::uint32_t collider, bool inside) {
+        visit_in_frustum(state.query, frustum, [&](std::uint32_t collider, bool inside) {
             if (!passes_filter(state, filter, collider)) return;
             const View view = inside ? View::Inside : view_of(state, collider, frustum, box);
             if (view == View::Outside) return;
@@ -168,7 +169,7 @@ Result<void> nearest(const World& world, Vec3d point, std::size_t k, float radiu
     if (auto checked = check_length(radius, "nearest: radius"); !checked) return checked;
     return run_query<Result<void>>(world, "nearest", [&](const WorldState& state) -> Result<void> {
         std::vector<Near> best;  // a heap with the farthest on top
-        visit_near(state, point, radius, [&](std::uint32_t collider) {
+        visit_near(state.query, point, radius, [&](std::uint32_t collider) {
             if (passes_filter(state, filter, collider)) {
                 const Near here = distance_to(state, collider, point);
                 if (best.size() == k && here < best.front()) {

@@ -1,7 +1,8 @@
 /// Stage "refresh": updates the fat boxes of awake bodies.
 #include <algorithm>
 
-#include "fase/world/detail/state.hpp"
+#include "fase/world/detail/collider_places.hpp"
+#include "fase/world/detail/stages.hpp"
 
 namespace fase {
 
@@ -19,53 +20,54 @@ Vec3 limited(Vec3 v, float max, bool& clamped) {
 }
 
 /// Clamps the velocities of all bodies before anything moves. The solver clamps again after forces.
-void limit_speeds(WorldState& state) {
-    state.clamped.clear();
-    for (const std::uint32_t body : state.awake) {
-        dynamics::BodyMotion& motion = state.bodies.motion[body];
+void limit_speeds(const Settings& settings, BodyTable& bodies, Moved& moved) {
+    moved.clamped.clear();
+    for (const std::uint32_t body : bodies.awake) {
+        dynamics::BodyMotion& motion = bodies.motion[body];
         bool clamped = false;
-        motion.linear_velocity = limited(motion.linear_velocity, state.settings.max_linear_speed, clamped);
-        motion.angular_velocity = limited(motion.angular_velocity, state.settings.max_angular_speed, clamped);
-        if (clamped) state.clamped.push_back(body);
+        motion.linear_velocity = limited(motion.linear_velocity, settings.max_linear_speed, clamped);
+        motion.angular_velocity = limited(motion.angular_velocity, settings.max_angular_speed, clamped);
+        if (clamped) moved.clamped.push_back(body);
     }
 }
 
 }  // namespace
 
-void refresh_boxes(WorldState& state, float seconds) {
-    merge_awake_added(state);
-    wake_requested_islands(state);
-    limit_speeds(state);
-    state.sweep.assign(state.bodies.traits.size(), 0);  // bodies that rest do not keep the sweep of an earlier step
-    state.previous_boxes.resize(state.boxes.size());
-    parallel_ranges(*state.tasks, state.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
+void refresh_boxes(const StepContext& context, const ColliderTable& colliders, BodyTable& bodies,
+                   BroadPhase& broad_phase, QueryTrees& query, Moved& moved) {
+    const Settings& settings = context.settings;
+    limit_speeds(settings, bodies, moved);
+    moved.sweep.assign(bodies.traits.size(), 0);  // bodies that rest do not keep the sweep of an earlier step
+    moved.previous_boxes.resize(broad_phase.boxes.size());
+    parallel_ranges(context.tasks, bodies.awake.size(), 128, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t body = state.awake[i];
-            const dynamics::BodyTraits& traits = state.bodies.traits[body];
+            const std::uint32_t body = bodies.awake[i];
+            const dynamics::BodyTraits& traits = bodies.traits[body];
             // A body that moves more than half its inner radius in a step could tunnel through a thin body.
-            const float path = length(state.bodies.motion[body].linear_velocity) * seconds;
+            const float path = length(bodies.motion[body].linear_velocity) * context.seconds;
             const float sweep = path > 0.5f * traits.inner_radius ? path : 0;
-            state.sweep[body] = sweep;
-            const float margin = path < slow_path * state.settings.box_margin ? state.settings.box_margin : 0;
-            for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next) {
-                const Aabb box = speculative_box(state, c, seconds, sweep);
-                if (contains(state.boxes[c], box) && !(state.changes[c] & edited)) continue;
+            moved.sweep[body] = sweep;
+            const float margin = path < slow_path * settings.box_margin ? settings.box_margin : 0;
+            for (std::uint32_t c = traits.first_collider; c != no_index; c = colliders[c].next) {
+                const Aabb box = speculative_box(bodies, colliders, c, settings.speculative_distance,
+                                                 sweep > 0 ? context.seconds : 0);
+                if (contains(broad_phase.boxes[c], box) && !(broad_phase.changes[c] & edited)) continue;
                 const Vec3 size = extent(box);
                 const float largest = std::max({size.x, size.y, size.z});
-                state.previous_boxes[c] = state.boxes[c];
-                state.boxes[c] = enlarged(box, std::min(margin, 0.25f * largest));
-                state.changes[c] |= moved_box;
+                moved.previous_boxes[c] = broad_phase.boxes[c];
+                broad_phase.boxes[c] = enlarged(box, std::min(margin, 0.25f * largest));
+                broad_phase.changes[c] |= moved_box;
             }
         }
     });
-    state.moved.clear();
-    for (const std::uint32_t body : state.awake)
-        for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
-            if (state.changes[c] & moved_box) {
-                state.moved.push_back(c);
-                mark_box_changed(state, c);
+    moved.colliders.clear();
+    for (const std::uint32_t body : bodies.awake)
+        for (std::uint32_t c = bodies.traits[body].first_collider; c != no_index; c = colliders[c].next)
+            if (broad_phase.changes[c] & moved_box) {
+                moved.colliders.push_back(c);
+                mark_box_changed(query, c);
             }
-    state.report.boxes_moved = static_cast<std::uint32_t>(state.moved.size());
+    context.report.boxes_moved = static_cast<std::uint32_t>(moved.colliders.size());
 }
 
 }  // namespace fase

@@ -34,12 +34,12 @@ void update_pairs_between(WorldState& state, std::uint32_t a, std::uint32_t b) {
 void reserve_pair_moves(WorldState& state, std::uint32_t body) {
     std::size_t contacts = 0;
     for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
-        state.contact_graph.for_each_of(c, [&](std::uint32_t) { ++contacts; });
-    state.active.reserve(state.active.size() + contacts);
-    state.resting.reserve(state.resting.size() + contacts);
-    reserve_for(state.contacts_to_check, state.contacts_to_check.size() + contacts);
-    reserve_for(state.woken_contacts, contacts);
-    reserve_for(state.woken_pairs, contacts);
+        state.contacts.graph.for_each_of(c, [&](std::uint32_t) { ++contacts; });
+    state.contacts.active.reserve(state.contacts.active.size() + contacts);
+    state.contacts.resting.reserve(state.contacts.resting.size() + contacts);
+    reserve_for(state.contacts.to_check, state.contacts.to_check.size() + contacts);
+    reserve_for(state.contacts.woken, contacts);
+    reserve_for(state.contacts.woken_pairs, contacts);
 }
 
 void update_motion_state(WorldState& state, std::uint32_t body) {
@@ -52,14 +52,14 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
                                                                : MotionState::Asleep;
     if (now == traits.motion_state) return;
     const std::span<const std::uint32_t> one(&body, 1);
-    remove_awake(state, body);
-    state.asleep.remove(one);
+    remove_awake(state.bodies, body);
+    state.bodies.asleep.remove(one);
     traits.motion_state = now;
     state.bodies.motion[body].island = body;
     state.bodies.motion[body].sleep_time = 0;
-    if (now == MotionState::Awake) insert_ascending(state.awake, one);
-    if (now == MotionState::Asleep) state.asleep.add(one, state.bodies.motion);
-    update_pair_lists(state, one);
+    if (now == MotionState::Awake) insert_ascending(state.bodies.awake, one);
+    if (now == MotionState::Asleep) state.bodies.asleep.add(one, state.bodies.motion);
+    update_pair_lists(state.bodies, state.colliders, state.broad_phase, state.contacts, one);
     update_boxes(state, body);
 }
 
@@ -71,11 +71,11 @@ Result<void> World::set_settings(const Settings& settings) {
                               before.contact_frequency != settings.contact_frequency ||
                               before.contact_damping_ratio != settings.contact_damping_ratio ||
                               before.push_out_speed != settings.push_out_speed || (before.sleep && !settings.sleep);
-        if (disturbs) reserve_wakes(*state_, state_->asleep.bodies.size());
+        if (disturbs) reserve_wakes(*state_, state_->bodies.asleep.bodies.size());
         state_->settings = settings;
         if (!disturbs) return {};
-        for (const std::uint32_t body : state_->asleep.bodies) disturb(*state_, body);
-        for (const std::uint32_t body : state_->awake) disturb(*state_, body);
+        for (const std::uint32_t body : state_->bodies.asleep.bodies) disturb(state_->bodies, body);
+        for (const std::uint32_t body : state_->bodies.awake) disturb(state_->bodies, body);
         return {};
     });
 }
@@ -93,7 +93,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
         motion.position = placed.position;
         motion.rotation = normalized(placed.rotation);
         update_boxes(*state_, body.index);
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -109,7 +109,7 @@ Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
         dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -161,7 +161,7 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
         if (kind == BodyKind::Dynamic)
             for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
                 if (!state.colliders[c].sensor &&
-                    std::holds_alternative<HalfSpace>(state.shapes[state.colliders[c].shape].shape))
+                    std::holds_alternative<HalfSpace>(state.colliders.shapes[state.colliders[c].shape].shape))
                     return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
         if (traits.kind == kind) return {};
         BodyEdit edit = edit_of(state, body.index);
@@ -201,7 +201,7 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
         set_shape(*state_, body.index, *shape);
         if (!(frame_before == traits.principal))
             update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -214,7 +214,7 @@ Result<void> World::set_damping(BodyId body, float linear, float angular) {
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].linear_damping = linear;
         state_->bodies.traits[body.index].angular_damping = angular;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -226,7 +226,7 @@ Result<void> World::set_gravity_scale(BodyId body, float scale) {
             return r;
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].gravity_scale = scale;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -236,7 +236,7 @@ Result<void> World::set_locks(BodyId body, AxisLocks locks) {
         if (!contains(body)) return stale_id("World::set_locks");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].locks = bits_of(locks);
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -246,7 +246,7 @@ Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
         if (!contains(body)) return stale_id("World::set_can_sleep");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].can_sleep = can_sleep;
-        if (!can_sleep) disturb(*state_, body.index);
+        if (!can_sleep) disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -255,7 +255,7 @@ Result<void> World::wake(BodyId body) {
     return guarded(*state_, "World::wake", [&]() -> Result<void> {
         if (!contains(body)) return stale_id("World::wake");
         reserve_wakes(*state_, 1);
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -266,21 +266,22 @@ Result<void> World::set_material(ColliderId collider, const Material& material) 
         if (auto checked = check(material); !checked) return checked;
         WorldState& state = *state_;
         std::size_t contacts = 0;
-        state.contact_graph.for_each_of(collider.index, [&](std::uint32_t) { ++contacts; });
+        state.contacts.graph.for_each_of(collider.index, [&](std::uint32_t) { ++contacts; });
         reserve_wakes(state, 2 * contacts + 1);
         state.colliders[collider.index].material = material;
-        const std::size_t wakes_before = state.bodies_to_wake.size();
-        state.contact_graph.for_each_of(collider.index, [&](std::uint32_t index) {
+        const std::size_t wakes_before = state.bodies.to_wake.size();
+        state.contacts.graph.for_each_of(collider.index, [&](std::uint32_t index) {
             const dynamics::Contact& c = state.contacts[index];
             for (const auto& [other, generation, body] : sides_of(c))
-                if (!is_current(state, other, generation)) return;  // its collider was removed: the next step ends it
-            update_materials(state, index);
+                if (!is_current(state.colliders, other, generation))
+                    return;  // its collider was removed: the next step ends it
+            update_materials(state.colliders, state.contacts, index);
             if (!c.sensor && c.touching)
-                for (const auto& side : sides_of(c)) disturb(state, side.body);
+                for (const auto& side : sides_of(c)) disturb(state.bodies, side.body);
         });
-        disturb(state, state.colliders[collider.index].body);
+        disturb(state.bodies, state.colliders[collider.index].body);
         // The order of a collider's contacts is not the same after a restore; the list is part of the hash.
-        std::sort(state.bodies_to_wake.begin() + static_cast<std::ptrdiff_t>(wakes_before), state.bodies_to_wake.end());
+        std::sort(state.bodies.to_wake.begin() + static_cast<std::ptrdiff_t>(wakes_before), state.bodies.to_wake.end());
         return {};
     });
 }
@@ -291,7 +292,7 @@ Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter
         reserve_wakes(*state_, 1);
         state_->colliders[collider.index].filter = filter;
         update_box(*state_, collider.index);
-        disturb(*state_, state_->colliders[collider.index].body);
+        disturb(state_->bodies, state_->colliders[collider.index].body);
         return {};
     });
 }
@@ -301,10 +302,10 @@ Result<void> World::exclude_pair(BodyId a, BodyId b) {
         if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
         if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
         reserve_wakes(*state_, 2);
-        if (!state_->exclusions.add(a.index, b.index)) return {};
+        if (!state_->bodies.exclusions.add(a.index, b.index)) return {};
         update_pairs_between(*state_, a.index, b.index);
-        disturb(*state_, a.index);
-        disturb(*state_, b.index);
+        disturb(state_->bodies, a.index);
+        disturb(state_->bodies, b.index);
         return {};
     });
 }
@@ -313,10 +314,10 @@ Result<void> World::include_pair(BodyId a, BodyId b) {
     return guarded(*state_, "include_pair", [&]() -> Result<void> {
         if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
         reserve_wakes(*state_, 2);
-        if (!state_->exclusions.remove(a.index, b.index)) return {};
+        if (!state_->bodies.exclusions.remove(a.index, b.index)) return {};
         update_pairs_between(*state_, a.index, b.index);
-        disturb(*state_, a.index);
-        disturb(*state_, b.index);
+        disturb(state_->bodies, a.index);
+        disturb(state_->bodies, b.index);
         return {};
     });
 }
@@ -343,7 +344,7 @@ Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
         if (auto checked = check_forces(sum, "World::apply_force"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -359,7 +360,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
         if (auto checked = check_forces(sum, "World::apply_torque"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -389,7 +390,7 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
         reserve_wakes(*state_, 1);
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }
@@ -406,7 +407,7 @@ Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds
         if (auto checked = check_velocity({}, angular, "World::apply_angular_impulse: "); !checked) return checked;
         reserve_wakes(*state_, 1);
         motion.angular_velocity = angular;
-        disturb(*state_, body.index);
+        disturb(state_->bodies, body.index);
         return {};
     });
 }

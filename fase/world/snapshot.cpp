@@ -217,7 +217,7 @@ template <class A, class Tag> void describe(A& a, IdPool<Tag>& pool) {
 /// The manifolds of each contact, wherever they lie in the pool; the first place of a contact that exists has friction
 /// and restitution even without points.
 template <class A> void describe_manifolds(A& a, WorldState& s) {
-    for (Contact& c : s.contacts) {
+    for (Contact& c : s.contacts.all) {
         if (c.body_a == c.body_b) continue;  // free
         const std::size_t count = std::max<std::size_t>({c.manifolds, c.coloured, 1});
         if constexpr (A::reads) {
@@ -225,28 +225,29 @@ template <class A> void describe_manifolds(A& a, WorldState& s) {
                 a.failed = true;
                 return;
             }
-            s.manifolds.reserve(c, count);
+            s.contacts.manifolds.reserve(c, count);
         }
-        for (std::size_t i = 0; i < count; ++i) describe(a, s.manifolds.places(c)[i]);
+        for (std::size_t i = 0; i < count; ++i) describe(a, s.contacts.manifolds.places(c)[i]);
     }
 }
 
 /// The one list of all state of a world that is hashed and saved.
 template <class A> void describe(A& a, WorldState& s) {
-    all(a, s.settings, s.steps, s.time, s.last_sub_step, s.body_ids, s.bodies.traits, s.bodies.motion, s.bodies.forces,
-        s.collider_ids, s.colliders, s.boxes, s.changes, s.shapes, s.free_shapes, s.awake, s.awake_added,
-        s.asleep.bodies, s.active.pairs, s.active.values, s.resting.pairs, s.resting.values, s.contacts,
-        s.free_contacts, s.edited_colliders, s.bodies_to_wake, s.bodies_let_go, s.contacts_to_check, s.removed_any,
-        s.query_all_awake);
+    all(a, s.settings, s.clock.steps, s.clock.time, s.clock.last_sub_step, s.bodies.ids, s.bodies.traits,
+        s.bodies.motion, s.bodies.forces, s.colliders.ids, s.colliders.all, s.broad_phase.boxes, s.broad_phase.changes,
+        s.colliders.shapes, s.colliders.free_shapes, s.bodies.awake, s.bodies.awake_added, s.bodies.asleep.bodies,
+        s.contacts.active.pairs, s.contacts.active.values, s.contacts.resting.pairs, s.contacts.resting.values,
+        s.contacts.all, s.contacts.free, s.broad_phase.edited_colliders, s.bodies.to_wake, s.bodies.let_go,
+        s.contacts.to_check, s.broad_phase.removed_any, s.broad_phase.query_all_awake);
     describe_manifolds(a, s);
-    std::vector<broad::Pair> excluded(s.exclusions.pairs().begin(), s.exclusions.pairs().end());
+    std::vector<broad::Pair> excluded(s.bodies.exclusions.pairs().begin(), s.bodies.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
-        s.exclusions.clear();
+        s.bodies.exclusions.clear();
         for (std::size_t i = 0; i < excluded.size(); ++i)
             if (!(excluded[i].a < excluded[i].b) || (i != 0 && !(excluded[i - 1] < excluded[i]))) a.failed = true;
         if (a.failed) return;  // unsorted pairs would take quadratic time
-        for (const broad::Pair pair : excluded) s.exclusions.add(pair.a, pair.b);
+        for (const broad::Pair pair : excluded) s.bodies.exclusions.add(pair.a, pair.b);
     }
 }
 
@@ -296,9 +297,9 @@ namespace {
 /// Gives contacts the new generations of their colliders.
 template <class Renewed> void renew_contacts(WorldState& state, const std::vector<Renewed>& renewed) {
     if (renewed.empty()) return;
-    std::vector<const Renewed*> of(state.colliders.size(), nullptr);
+    std::vector<const Renewed*> of(state.colliders.all.size(), nullptr);
     for (const Renewed& slot : renewed) of[slot.index] = &slot;
-    for (const pairs::PairList* list : {&state.active, &state.resting})
+    for (const pairs::PairList* list : {&state.contacts.active, &state.contacts.resting})
         for (const std::uint32_t index : list->values) {
             Contact& c = state.contacts[index];
             const auto renew = [&](std::uint32_t collider, std::uint16_t& generation) {
@@ -334,26 +335,26 @@ Result<std::span<const std::byte>> payload_of(std::span<const std::byte> snapsho
 /// Builds what a snapshot does not hold: sets of boxes, links of contacts and sleepers, keys of shapes, memory for
 /// edits.
 void complete(WorldState& next) {
-    next.box_sets = make_box_sets(next.structure);
-    next.set_of.assign(next.colliders.size(), 0);
-    for (std::uint32_t c = 0; c < next.collider_ids.size(); ++c) {
-        if (!next.collider_ids.alive_at(c)) continue;
-        const broad::Move move{c, next.boxes[c]};
+    next.broad_phase.sets = make_box_sets(next.broad_phase.structure);
+    next.broad_phase.set_of.assign(next.colliders.all.size(), 0);
+    for (std::uint32_t c = 0; c < next.colliders.ids.size(); ++c) {
+        if (!next.colliders.ids.alive_at(c)) continue;
+        const broad::Move move{c, next.broad_phase.boxes[c]};
         const MotionState motion_state = next.bodies.traits[next.colliders[c].body].motion_state;
-        next.box_sets.of(motion_state).insert(std::span(&move, 1));
-        next.set_of[c] = static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(motion_state));
+        next.broad_phase.sets.of(motion_state).insert(std::span(&move, 1));
+        next.broad_phase.set_of[c] = static_cast<std::uint8_t>(1 + static_cast<std::uint8_t>(motion_state));
     }
-    next.box_sets.commit_as_they_are();
-    rebuild_contact_graph(next);
-    next.awake.reserve(next.bodies.traits.size());
-    next.awake_added.reserve(next.bodies.traits.size());
-    next.asleep.reserve(next.bodies.traits.size());
-    next.asleep.relink(next.bodies.motion);
-    next.edited_colliders.reserve(next.colliders.size());
-    next.free_shapes.reserve(next.shapes.size());
-    measure_asleep_overhang(next, next.asleep.bodies);
-    for (std::uint32_t i = 0; i < next.shapes.size(); ++i)
-        if (next.shapes[i].users != 0) next.shape_of_key.emplace(next.shapes[i].key, i);
+    next.broad_phase.sets.commit_as_they_are();
+    rebuild_contact_graph(next.contacts);
+    next.bodies.awake.reserve(next.bodies.traits.size());
+    next.bodies.awake_added.reserve(next.bodies.traits.size());
+    next.bodies.asleep.reserve(next.bodies.traits.size());
+    next.bodies.asleep.relink(next.bodies.motion);
+    next.broad_phase.edited_colliders.reserve(next.colliders.all.size());
+    next.colliders.free_shapes.reserve(next.colliders.shapes.size());
+    measure_asleep_overhang(next.bodies, next.colliders, next.broad_phase, next.query, next.bodies.asleep.bodies);
+    for (std::uint32_t i = 0; i < next.colliders.shapes.size(); ++i)
+        if (next.colliders.shapes[i].users != 0) next.colliders.shape_of_key.emplace(next.colliders.shapes[i].key, i);
 }
 
 /// Gives the pool of a snapshot the number of the restoring world. Returns the slots whose id got a new generation;
@@ -385,20 +386,20 @@ Result<IdMap> World::restore(std::span<const std::byte> snapshot) {
         const std::string_view wrong =
             archive.failed || archive.at != payload->size() ? "an incomplete state" : wrong_part(*next);
         if (!wrong.empty()) return not_a_snapshot(head_size + archive.at, std::string(wrong), "a consistent state");
-        if (!rebuild_colours(*next))
+        if (!rebuild_colours(next->bodies, next->contacts))
             return not_a_snapshot(head_size + archive.at, "contradictory colours", "a consistent state");
         IdMap map;
-        map.from_ = next->body_ids.owner();
-        map.to_ = state_->body_ids.owner();
-        auto bodies = take_over<IdMap::Renewed>(next->body_ids, state_->body_ids);
-        auto colliders = take_over<IdMap::Renewed>(next->collider_ids, state_->collider_ids);
+        map.from_ = next->bodies.ids.owner();
+        map.to_ = state_->bodies.ids.owner();
+        auto bodies = take_over<IdMap::Renewed>(next->bodies.ids, state_->bodies.ids);
+        auto colliders = take_over<IdMap::Renewed>(next->colliders.ids, state_->colliders.ids);
         if (!bodies || !colliders)
             return Error{Status::Capacity, "World::restore", "found a slot that has issued 65,535 ids; expected fewer",
                          "restore into a new world"};
         map.bodies_ = std::move(*bodies);
         map.colliders_ = std::move(*colliders);
         renew_contacts(*next, map.colliders_);
-        next->structure = state_->structure;
+        next->broad_phase.structure = state_->broad_phase.structure;
         next->solver.reference = state_->solver.reference;
         complete(*next);
         next->own_tasks = std::move(state_->own_tasks);

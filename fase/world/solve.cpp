@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "fase/world/check_values.hpp"
-#include "fase/world/detail/state.hpp"
+#include "fase/world/detail/stages.hpp"
 
 namespace fase {
 
@@ -11,11 +11,11 @@ using dynamics::BodyTraits;
 
 namespace {
 
-dynamics::SolverSettings solver_settings(const WorldState& state, float seconds) {
-    const Settings& settings = state.settings;
-    const float sub_step = seconds / static_cast<float>(settings.sub_steps);
-    return {settings.gravity,           seconds,
-            settings.sub_steps,         state.last_sub_step > 0 ? sub_step / state.last_sub_step : 1,
+dynamics::SolverSettings solver_settings(const StepContext& context) {
+    const Settings& settings = context.settings;
+    const float sub_step = context.seconds / static_cast<float>(settings.sub_steps);
+    return {settings.gravity,           context.seconds,
+            settings.sub_steps,         context.last_sub_step > 0 ? sub_step / context.last_sub_step : 1,
             settings.contact_frequency, settings.contact_damping_ratio,
             settings.push_out_speed,    settings.restitution_threshold,
             settings.linear_slop,       {settings.max_linear_speed, settings.max_angular_speed}};
@@ -27,22 +27,23 @@ bool is_valid(const BodyMotion& motion) {
 }
 
 /// Stops a body at its last valid pose and excludes it from the simulation.
-void quarantine(WorldState& state, std::uint32_t body) {
+void quarantine(const StepContext& context, const MotionStates& state, std::uint32_t body) {
     state.bodies.traits[body].quarantined = true;
     state.bodies.motion[body].linear_velocity = {};
     state.bodies.motion[body].angular_velocity = {};
     state.bodies.motion[body].island = body;
     for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next) {
-        mark_edited(state, c);  // its pairs end in the next step
+        mark_edited(state.broad_phase, state.query, c);  // its pairs end in the next step
     }
-    ++state.report.quarantined;
+    ++context.report.quarantined;
 }
 
-/// Quarantines bodies whose forces would make their velocity infinite, before the solver spreads it to their
-/// neighbours.
-void quarantine_invalid_forces(WorldState& state, float seconds) {
+}  // namespace
+
+void quarantine_invalid_forces(const StepContext& context, const MotionStates& state, Constraints& constraints) {
+    const float seconds = context.seconds;
     std::vector<std::uint32_t> invalid;
-    for (const std::uint32_t body : state.awake) {
+    for (const std::uint32_t body : state.bodies.awake) {
         const BodyTraits& traits = state.bodies.traits[body];
         const dynamics::BodyForces& forces = state.bodies.forces[body];
         const BodyMotion& motion = state.bodies.motion[body];
@@ -55,77 +56,77 @@ void quarantine_invalid_forces(WorldState& state, float seconds) {
     if (invalid.empty()) return;
     for (const std::uint32_t body : invalid) {
         state.bodies.forces[body] = {};
-        quarantine(state, body);
+        quarantine(context, state, body);
     }
     move_to_asleep(state, invalid);
-    gather_constraints(state, invalid);
+    gather_constraints(state.bodies, context.settings.linear_slop, state.contacts, constraints, invalid);
 }
 
-}  // namespace
-
-void solve(WorldState& state, float seconds) {
-    quarantine_invalid_forces(state, seconds);
-    const dynamics::SolverSettings settings = solver_settings(state, seconds);
-    state.solver.load_bodies(state.bodies, state.awake, settings, *state.tasks);
-    state.solver.load_constraints({state.constraints, state.results}, state.colours, state.manifolds, state.bodies,
-                                  settings, *state.tasks);
-    state.solver.run(settings, *state.tasks);
-    state.solver.store_constraints(state.constraints, state.manifolds, state.results, state.bodies, settings,
-                                   *state.tasks);
-    state.last_sub_step = seconds / static_cast<float>(state.settings.sub_steps);
-    const dynamics::SolverCounts counts = state.solver.counts();
-    state.report.colours = counts.colours;
-    state.report.overflow = counts.overflow;
-    state.report.speed_clamped = counts.clamped;
-    for (std::size_t i = 0; !state.clamped.empty() && i < state.awake.size(); ++i)
-        if (!state.solver.motion(i).clamped &&
-            std::binary_search(state.clamped.begin(), state.clamped.end(), state.awake[i]))
-            ++state.report.speed_clamped;
+void solve(const StepContext& context, const BodyTable& bodies, const Moved& moved, ContactTable& contacts,
+           Constraints& constraints, dynamics::Solver& solver) {
+    const dynamics::SolverSettings settings = solver_settings(context);
+    solver.load_bodies(bodies, bodies.awake, settings, context.tasks);
+    solver.load_constraints({constraints.all, constraints.results}, contacts.colours, contacts.manifolds, bodies,
+                            settings, context.tasks);
+    solver.run(settings, context.tasks);
+    solver.store_constraints(constraints.all, contacts.manifolds, constraints.results, bodies, settings, context.tasks);
+    const dynamics::SolverCounts counts = solver.counts();
+    context.report.colours = counts.colours;
+    context.report.overflow = counts.overflow;
+    context.report.speed_clamped = counts.clamped;
+    for (std::size_t i = 0; !moved.clamped.empty() && i < bodies.awake.size(); ++i)
+        if (!solver.motion(i).clamped &&
+            std::binary_search(moved.clamped.begin(), moved.clamped.end(), bodies.awake[i]))
+            ++context.report.speed_clamped;
 }
 
 namespace {
 
 /// Marks the bodies on which a contact acted in this step.
-void mark_held(WorldState& state) {
-    state.held.resize(state.bodies.traits.size());
-    for (const std::uint32_t body : state.awake) state.held[body] = 0;
-    for (std::size_t i = 0; i < state.constraints.size(); ++i)
-        if (state.results[i].pushes)
-            state.held[state.constraints[i].body_a] = state.held[state.constraints[i].body_b] = 1;
+void mark_held(const Constraints& constraints, BodyTable& bodies) {
+    bodies.held.resize(bodies.traits.size());
+    for (const std::uint32_t body : bodies.awake) bodies.held[body] = 0;
+    for (std::size_t i = 0; i < constraints.all.size(); ++i)
+        if (constraints.results[i].pushes)
+            bodies.held[constraints.all[i].body_a] = bodies.held[constraints.all[i].body_b] = 1;
 }
 
 /// Whether gravity alone acts on a body: it is slow only because it has just begun to fall.
-bool falls(const WorldState& state, std::uint32_t body) {
-    const BodyTraits& traits = state.bodies.traits[body];
-    const Vec3 gravity = state.settings.gravity * (traits.inverse_mass > 0 ? traits.gravity_scale : 0);
+bool falls(const BodyTable& bodies, Vec3 world_gravity, std::uint32_t body) {
+    const BodyTraits& traits = bodies.traits[body];
+    const Vec3 gravity = world_gravity * (traits.inverse_mass > 0 ? traits.gravity_scale : 0);
     const Vec3 free{traits.locks & 1 ? 0 : gravity.x, traits.locks & 2 ? 0 : gravity.y,
                     traits.locks & 4 ? 0 : gravity.z};
-    return state.held[body] == 0 && length_squared(free) > 0;
+    return bodies.held[body] == 0 && length_squared(free) > 0;
 }
 
 }  // namespace
 
-void finish(WorldState& state, float seconds) {
-    mark_held(state);
-    const float linear = state.settings.sleep_linear_speed, angular = state.settings.sleep_angular_speed;
-    const float distance = state.settings.sleep_distance;
-    state.reused.assign(state.awake.size(), 0);  // reused as flags of bodies with invalid motion
-    parallel_ranges(*state.tasks, state.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
+void finish(const StepContext& context, const dynamics::Solver& solver, const Constraints& constraints,
+            const MotionStates& state) {
+    const Settings& settings = context.settings;
+    const float seconds = context.seconds;
+    BodyTable& bodies = state.bodies;
+    mark_held(constraints, bodies);
+    const float linear = settings.sleep_linear_speed, angular = settings.sleep_angular_speed;
+    const float distance = settings.sleep_distance;
+    bodies.faults.assign(bodies.awake.size(), 0);
+    parallel_ranges(context.tasks, bodies.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t body = state.awake[i];
-            const BodyTraits& traits = state.bodies.traits[body];
-            const dynamics::SolverBody& row = state.solver.body(i);
-            BodyMotion next = state.bodies.motion[body];
+            const std::uint32_t body = bodies.awake[i];
+            const BodyTraits& traits = bodies.traits[body];
+            const dynamics::SolverBody& row = solver.body(i);
+            BodyMotion next = bodies.motion[body];
             next.position += Vec3d{row.moved[0], row.moved[1], row.moved[2]};
-            const Quat turned = state.solver.motion(i).turned;
+            const Quat turned = solver.motion(i).turned;
             if (!(turned == Quat{})) next.rotation = normalized(turned * next.rotation);
             next.linear_velocity = {row.velocity[0], row.velocity[1], row.velocity[2]};
             next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};
-            state.bodies.forces[body] = {};
+            bodies.forces[body] = {};
             if (!is_valid(next)) {
                 const bool left = is_finite(next.position) && is_finite(next.linear_velocity) &&
                                   is_finite(next.angular_velocity) && is_finite(next.rotation);
-                state.reused[i] = left ? 2 : 1;
+                bodies.faults[i] = left ? 2 : 1;
                 continue;
             }
             next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
@@ -136,24 +137,24 @@ void finish(WorldState& state, float seconds) {
             const bool slow = length_squared(next.linear_velocity) < linear * linear &&
                               length_squared(next.angular_velocity) < angular * angular;
             const bool rests = traits.kind == BodyKind::Dynamic
-                                   ? slow && stays && traits.can_sleep && !falls(state, body)
+                                   ? slow && stays && traits.can_sleep && !falls(bodies, settings.gravity, body)
                                    : !is_moving(next);
             next.sleep_time = rests ? next.sleep_time + seconds : 0;
             // The net motion is measured within each span of time_to_sleep, not since the body came to rest.
-            const float span = state.settings.time_to_sleep;
+            const float span = settings.time_to_sleep;
             const bool spans_end =
                 span > 0 && std::floor(next.sleep_time / span) > std::floor((next.sleep_time - seconds) / span);
             if (!rests || spans_end) next.drift = next.turn = {};
-            state.bodies.motion[body] = next;
+            bodies.motion[body] = next;
         }
     });
     std::vector<std::uint32_t> invalid;
-    for (std::size_t i = 0; i < state.awake.size(); ++i)
-        if (state.reused[i] != 0) {
-            invalid.push_back(state.awake[i]);
-            state.report.left_world += state.reused[i] == 2 ? 1 : 0;
+    for (std::size_t i = 0; i < bodies.awake.size(); ++i)
+        if (bodies.faults[i] != 0) {
+            invalid.push_back(bodies.awake[i]);
+            context.report.left_world += bodies.faults[i] == 2 ? 1 : 0;
         }
-    for (const std::uint32_t body : invalid) quarantine(state, body);
+    for (const std::uint32_t body : invalid) quarantine(context, state, body);
     move_to_asleep(state, invalid);
 }
 

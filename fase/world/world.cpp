@@ -5,6 +5,7 @@
 #include <new>
 
 #include "fase/core/detail/text.hpp"
+#include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
@@ -43,11 +44,11 @@ Result<World> World::create(const Settings& settings, const Setup& setup) {
             }
         auto state = std::make_unique<WorldState>();
         const std::uint16_t number = next_world_number();
-        state->body_ids = IdPool<BodyTag>(number);
-        state->collider_ids = IdPool<ColliderTag>(number);
+        state->bodies.ids = IdPool<BodyTag>(number);
+        state->colliders.ids = IdPool<ColliderTag>(number);
         state->settings = settings;
-        state->structure = setup.structure;
-        state->box_sets = make_box_sets(setup.structure);
+        state->broad_phase.structure = setup.structure;
+        state->broad_phase.sets = make_box_sets(setup.structure);
         if (setup.tasks == nullptr) state->own_tasks = make_thread_runner(setup.threads);
         state->tasks = setup.tasks != nullptr ? setup.tasks : state->own_tasks.get();
         return World(std::move(state));
@@ -83,12 +84,12 @@ Result<StepReport> World::step(float seconds) {
 
 const StepReport& World::last_report() const { return state_->report; }
 const Events& World::events() const { return state_->events; }
-std::uint64_t World::steps() const { return state_->steps; }
-double World::time() const { return state_->time; }
+std::uint64_t World::steps() const { return state_->clock.steps; }
+double World::time() const { return state_->clock.time; }
 const Settings& World::settings() const { return state_->settings; }
-std::size_t World::body_count() const { return state_->body_ids.count(); }
-bool World::contains(BodyId body) const { return state_->body_ids.contains(body); }
-bool World::contains(ColliderId collider) const { return state_->collider_ids.contains(collider); }
+std::size_t World::body_count() const { return state_->bodies.ids.count(); }
+bool World::contains(BodyId body) const { return state_->bodies.ids.contains(body); }
+bool World::contains(ColliderId collider) const { return state_->colliders.ids.contains(collider); }
 
 namespace {
 
@@ -113,8 +114,8 @@ BodyState state_of(const WorldState& state, BodyId id) {
 /// Returns one manifold of a contact.
 ContactState state_of(const WorldState& state, const dynamics::Contact& c, const dynamics::ContactManifold& m) {
     ContactState contact;
-    contact.a = {c.collider_a, c.generation_a, state.collider_ids.owner()};
-    contact.b = {c.collider_b, c.generation_b, state.collider_ids.owner()};
+    contact.a = {c.collider_a, c.generation_a, state.colliders.ids.owner()};
+    contact.b = {c.collider_b, c.generation_b, state.colliders.ids.owner()};
     contact.normal = m.normal;
     contact.count = m.count;
     contact.sensor = c.sensor;
@@ -139,12 +140,14 @@ ContactState state_of(const WorldState& state, const dynamics::Contact& c, const
 
 /// Calls f(manifold, contact) for each manifold with points whose colliders exist.
 template <class F> void for_each_manifold(const WorldState& state, const F& f) {
-    for (const pairs::PairList* list : {&state.active, &state.resting})
+    for (const pairs::PairList* list : {&state.contacts.active, &state.contacts.resting})
         for (const std::uint32_t index : list->values) {
             const dynamics::Contact& c = state.contacts[index];
             const auto [a, b] = sides_of(c);
-            if (!is_current(state, a.collider, a.generation) || !is_current(state, b.collider, b.generation)) continue;
-            for (const dynamics::ContactManifold& manifold : state.manifolds.of(c)) f(c, manifold);
+            if (!is_current(state.colliders, a.collider, a.generation) ||
+                !is_current(state.colliders, b.collider, b.generation))
+                continue;
+            for (const dynamics::ContactManifold& manifold : state.contacts.manifolds.of(c)) f(c, manifold);
         }
 }
 
@@ -163,10 +166,11 @@ Result<ColliderState> World::collider(ColliderId collider) const {
         const Collider& c = state_->colliders[collider.index];
         ColliderState out;
         out.id = collider;
-        out.body = *state_->body_ids.id_at(c.body);
-        out.shape = &state_->shapes[c.shape].shape;
+        out.body = *state_->bodies.ids.id_at(c.body);
+        out.shape = &state_->colliders.shapes[c.shape].shape;
         out.def = {c.in_body, c.material, c.density, c.filter, c.sensor, c.user};
-        out.box = speculative_box(*state_, collider.index, 0, 0);
+        out.box =
+            speculative_box(state_->bodies, state_->colliders, collider.index, state_->settings.speculative_distance);
         return out;
     });
 }
@@ -190,16 +194,16 @@ template <class T, class F> bool append(std::vector<T>& out, std::size_t count, 
 std::vector<BodyId> World::bodies() const {
     std::vector<BodyId> out;
     append(out, body_count(), [&] {
-        for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
-            if (const auto id = state_->body_ids.id_at(i)) out.push_back(*id);
+        for (std::uint32_t i = 0; i < state_->bodies.ids.size(); ++i)
+            if (const auto id = state_->bodies.ids.id_at(i)) out.push_back(*id);
     });
     return out;
 }
 
 void World::read_bodies(std::vector<BodyState>& out) const {
     append(out, body_count(), [&] {
-        for (std::uint32_t i = 0; i < state_->body_ids.size(); ++i)
-            if (const auto id = state_->body_ids.id_at(i)) out.push_back(state_of(*state_, *id));
+        for (std::uint32_t i = 0; i < state_->bodies.ids.size(); ++i)
+            if (const auto id = state_->bodies.ids.id_at(i)) out.push_back(state_of(*state_, *id));
     });
 }
 
@@ -211,7 +215,7 @@ std::vector<ColliderId> World::colliders_of(BodyId body) const {
     for (std::uint32_t c = first; c != no_index; c = state_->colliders[c].next) ++count;
     append(out, count, [&] {
         for (std::uint32_t c = first; c != no_index; c = state_->colliders[c].next)
-            out.push_back(*state_->collider_ids.id_at(c));
+            out.push_back(*state_->colliders.ids.id_at(c));
     });
     return out;
 }

@@ -162,7 +162,7 @@ TEST(Edit, material_modes_combine_as_named) {
 TEST(Edit, adding_and_removing_a_thousand_bodies_leaks_nothing) {
     World world = make_world();
     add_ground(world);
-    const std::size_t shapes = WorldStateAccess::of(world).shapes.size();
+    const std::size_t shapes = WorldStateAccess::of(world).colliders.shapes.size();
     Random random(9);
     std::vector<BodyId> bodies;
     for (int step = 0; step < 100; ++step) {
@@ -177,7 +177,7 @@ TEST(Edit, adding_and_removing_a_thousand_bodies_leaks_nothing) {
             bodies.erase(bodies.begin() + static_cast<long>(at));
         }
         ASSERT_TRUE(world.step());
-        broad::AnyStructure awake = WorldStateAccess::of(world).box_sets.of(
+        broad::AnyStructure awake = WorldStateAccess::of(world).broad_phase.sets.of(
             MotionState::Awake);  // erases of bodies that fell asleep may still be pending
         awake.commit();
         ASSERT_EQ(awake.broken_invariant(), "");
@@ -185,15 +185,18 @@ TEST(Edit, adding_and_removing_a_thousand_bodies_leaks_nothing) {
     for (const BodyId body : bodies) ASSERT_TRUE(world.remove_body(body));
     ASSERT_TRUE(world.step());
     EXPECT_EQ(world.body_count(), 1u);
-    EXPECT_EQ(WorldStateAccess::of(world).active.size() + WorldStateAccess::of(world).resting.size(), 0u);
-    EXPECT_EQ(WorldStateAccess::of(world).contacts.size(), WorldStateAccess::of(world).free_contacts.size());
-    EXPECT_EQ(WorldStateAccess::of(world).shapes.size() - WorldStateAccess::of(world).free_shapes.size(), shapes);
+    EXPECT_EQ(WorldStateAccess::of(world).contacts.active.size() + WorldStateAccess::of(world).contacts.resting.size(),
+              0u);
+    EXPECT_EQ(WorldStateAccess::of(world).contacts.all.size(), WorldStateAccess::of(world).contacts.free.size());
+    EXPECT_EQ(
+        WorldStateAccess::of(world).colliders.shapes.size() - WorldStateAccess::of(world).colliders.free_shapes.size(),
+        shapes);
 }
 
 TEST(Edit, equal_shapes_are_stored_once) {
     World world = make_world();
     for (int i = 0; i < 10; ++i) add(world, {.position = {3.0 * i, 0, 0}}, Box{});
-    EXPECT_EQ(WorldStateAccess::of(world).shapes.size(), 1u);
+    EXPECT_EQ(WorldStateAccess::of(world).colliders.shapes.size(), 1u);
 }
 
 TEST(Edit, forces_are_forgotten_when_a_body_changes_its_kind) {

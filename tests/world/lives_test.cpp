@@ -2,6 +2,8 @@
 #include <set>
 
 #include "fase/narrow/dispatch.hpp"
+#include "fase/world/detail/collider_places.hpp"
+#include "fase/world/detail/contacts.hpp"
 #include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 
@@ -29,16 +31,17 @@ public:
             for (const std::uint32_t b : all) {
                 const Collider &sensor = state.colliders[a], &visitor = state.colliders[b];
                 if (!sensor.sensor || visitor.sensor || sensor.body == visitor.body) continue;
-                const Pose pa = world_pose(state, sensor), pb = world_pose(state, visitor);
+                const Pose pa = world_pose(state.bodies, sensor), pb = world_pose(state.bodies, visitor);
                 const LocalPose b_in_a{rotate(conjugate(pa.rotation), to_float(pb.position - pa.position)),
                                        conjugate(pa.rotation) * pb.rotation};
-                const narrow::Manifold m =
-                    narrow::collide(state.shapes[sensor.shape].shape, state.shapes[visitor.shape].shape, b_in_a, 0.1f);
+                const narrow::Manifold m = narrow::collide(state.colliders.shapes[sensor.shape].shape,
+                                                           state.colliders.shapes[visitor.shape].shape, b_in_a, 0.1f);
                 float nearest = 1;
                 for (int i = 0; i < m.count; ++i)
                     nearest = std::min(nearest, m.points[static_cast<std::size_t>(i)].separation);
                 if (std::abs(nearest) < 1e-3f) continue;
-                EXPECT_EQ(open_.contains({a, b}), nearest < 0 && may_make_contact(state, broad::ordered_pair(a, b)))
+                EXPECT_EQ(open_.contains({a, b}),
+                          nearest < 0 && may_make_contact(state.bodies, state.colliders, broad::ordered_pair(a, b)))
                     << "sensor " << a << ", visitor " << b;
             }
     }
@@ -111,11 +114,11 @@ private:
     }
     void nobody_hangs() {
         const WorldState& state = WorldStateAccess::of(world_);
-        for (const std::uint32_t body : state.asleep.bodies) {
+        for (const std::uint32_t body : state.bodies.asleep.bodies) {
             if (state.bodies.traits[body].kind != BodyKind::Dynamic || state.bodies.traits[body].quarantined) continue;
             bool touches = false;
             for (std::uint32_t c = state.bodies.traits[body].first_collider; c != no_index; c = state.colliders[c].next)
-                state.contact_graph.for_each_of(
+                state.contacts.graph.for_each_of(
                     c, [&](std::uint32_t i) { touches |= !state.contacts[i].sensor && state.contacts[i].touching; });
             const bool weightless = state.bodies.traits[body].inverse_mass == 0;  // a sensor that became dynamic
             EXPECT_TRUE(touches || weightless) << "body " << body << " hangs";

@@ -27,8 +27,8 @@ struct SplitContact {
         for (int i = 0; i < 30; ++i) EXPECT_TRUE(world.step());
         Contact& c = contact();
         EXPECT_EQ(c.manifolds, 1);
-        internals().manifolds.reserve(c, 2);
-        const std::span<ContactManifold> places = internals().manifolds.places(c);
+        internals().contacts.manifolds.reserve(c, 2);
+        const std::span<ContactManifold> places = internals().contacts.manifolds.places(c);
         places[1] = places[0];
         places[1].colour = {};
         places[1].key.triangle = 1;
@@ -43,12 +43,12 @@ struct SplitContact {
             places[1].feature[i] = places[0].feature[i + 2];
         }
         c.manifolds = 2;
-        internals().results.clear();
+        internals().constraints.results.clear();
     }
     WorldState& internals() { return WorldStateAccess::of(world); }
-    Contact& contact() { return internals().contacts[internals().active.values[0]]; }
+    Contact& contact() { return internals().contacts[internals().contacts.active.values[0]]; }
     /// Colours that are taken at the box.
-    int colours() { return internals().colours.used(internals().colliders[contact().collider_b].body); }
+    int colours() { return internals().contacts.colours.used(internals().colliders[contact().collider_b].body); }
 };
 
 TEST(Manifolds, a_contact_of_two_manifolds_bears_its_body_and_tells_both) {
@@ -95,22 +95,22 @@ TEST(Manifolds, colours_of_manifolds_that_end_are_freed) {
     SplitContact split;
     EXPECT_TRUE(split.world.step());
     EXPECT_EQ(split.colours(), 2);
-    const auto kept = split.internals().manifolds.of(split.contact())[0].colour.number;
+    const auto kept = split.internals().contacts.manifolds.of(split.contact())[0].colour.number;
     split.contact().reusable = false;  // two boxes give one manifold again
     EXPECT_TRUE(split.world.step());
     EXPECT_EQ(split.contact().manifolds, 1);
     EXPECT_EQ(split.colours(), 1);
-    EXPECT_EQ(split.internals().manifolds.of(split.contact())[0].colour.number, kept) << "colours persist";
+    EXPECT_EQ(split.internals().contacts.manifolds.of(split.contact())[0].colour.number, kept) << "colours persist";
     EXPECT_TRUE(split.world.set_velocity(split.box, {0, 20, 0}, {}));
     for (int i = 0; i < 30; ++i) EXPECT_TRUE(split.world.step());
-    EXPECT_TRUE(split.internals().active.values.empty());
-    EXPECT_EQ(split.internals().colours.used(split.box.index), 0);
+    EXPECT_TRUE(split.internals().contacts.active.values.empty());
+    EXPECT_EQ(split.internals().contacts.colours.used(split.box.index), 0);
 }
 
 TEST(Manifolds, contradictory_colours_in_a_snapshot_are_refused) {
     SplitContact split;
     EXPECT_TRUE(split.world.step());
-    const auto manifolds = split.internals().manifolds.of(split.contact());
+    const auto manifolds = split.internals().contacts.manifolds.of(split.contact());
     manifolds[1].colour = manifolds[0].colour;
     World twin = make_world();
     const std::uint64_t before = twin.hash();

@@ -10,6 +10,7 @@
 #include "fase/narrow/cast_ray.hpp"
 #include "fase/narrow/cast_shape.hpp"
 #include "fase/narrow/distance.hpp"
+#include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/state_access.hpp"
 #include "tests/world/worlds.hpp"
 
@@ -49,12 +50,12 @@ struct Target {
 std::vector<Target> all_of(const World& world) {
     std::vector<Target> out;
     const WorldState& s = WorldStateAccess::of(world);
-    for (std::uint32_t c = 0; c < s.collider_ids.size(); ++c) {
-        const auto id = s.collider_ids.id_at(c);
+    for (std::uint32_t c = 0; c < s.colliders.ids.size(); ++c) {
+        const auto id = s.colliders.ids.id_at(c);
         if (!id || s.colliders[c].sensor) continue;
-        out.push_back({{*s.body_ids.id_at(s.colliders[c].body), *id},
-                       &s.shapes[s.colliders[c].shape].shape,
-                       world_pose(s, s.colliders[c])});
+        out.push_back({{*s.bodies.ids.id_at(s.colliders[c].body), *id},
+                       &s.colliders.shapes[s.colliders[c].shape].shape,
+                       world_pose(s.bodies, s.colliders[c])});
     }
     return out;
 }
@@ -273,7 +274,7 @@ TEST(Query, finds_bodies_that_fell_asleep_in_full_motion) {
         run(world, 1.0 / 60);
         expect_right(world, static_cast<std::uint64_t>(200 + i), 6);
     }
-    EXPECT_FALSE(WorldStateAccess::of(world).asleep.bodies.empty());
+    EXPECT_FALSE(WorldStateAccess::of(world).bodies.asleep.bodies.empty());
     EXPECT_GT(WorldStateAccess::of(world).query.asleep_overhang, 0);
     // A restored world measures the overhang again.
     World copy = make_world();
@@ -388,7 +389,7 @@ TEST(Query, a_distant_centre_of_mass_keeps_boxes_around_their_shapes) {
         const BodyId body = add(world, {.kind = kind}, Box{{1, 1, 1}});
         ASSERT_TRUE(world.set_mass(body, MassProperties{1, {1.2e5f, 3.4e5f, 5.6e5f}, Mat3::diagonal({1, 2, 2.5f})}));
         const Target target = all_of(world)[0];
-        EXPECT_TRUE(contains(WorldStateAccess::of(world).boxes[0], bounds(*target.shape, target.pose)));
+        EXPECT_TRUE(contains(WorldStateAccess::of(world).broad_phase.boxes[0], bounds(*target.shape, target.pose)));
     }
 }
 

@@ -106,25 +106,28 @@ TEST(Snapshot, names_the_part_that_is_wrong) {
         EXPECT_NE(restored.error().text().find(part), std::string::npos) << restored.error().text();
         return std::string(part);
     };
-    EXPECT_EQ(wrong([](WorldState& s) { s.awake.pop_back(); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.bodies_to_wake.push_back(999); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.bodies_let_go.push_back(999); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.awake_added.clear(); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.awake_added.push_back(s.awake[0]); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.awake_added.push_back(s.awake_added[0]); }), "wrong lists of bodies");
-    EXPECT_EQ(wrong([](WorldState& s) { s.contacts_to_check.push_back(999); }), "wrong contacts");
-    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.traits[s.awake[0]].motion_state = MotionState::Static; }),
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.awake.pop_back(); }), "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.to_wake.push_back(999); }), "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.let_go.push_back(999); }), "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.awake_added.clear(); }), "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.awake_added.push_back(s.bodies.awake[0]); }), "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.awake_added.push_back(s.bodies.awake_added[0]); }),
+              "wrong lists of bodies");
+    EXPECT_EQ(wrong([](WorldState& s) { s.contacts.to_check.push_back(999); }), "wrong contacts");
+    EXPECT_EQ(wrong([](WorldState& s) { s.bodies.traits[s.bodies.awake[0]].motion_state = MotionState::Static; }),
               "wrong motion states");
-    EXPECT_EQ(wrong([](WorldState& s) { s.active.values[0] = s.active.values[1]; }), "wrong contacts");
-    EXPECT_EQ(wrong([](WorldState& s) { std::swap(s.active.pairs[0], s.active.pairs[1]); }), "wrong contacts");
-    EXPECT_EQ(wrong([](WorldState& s) { s.free_contacts.push_back(0); }), "wrong contacts");
-    EXPECT_EQ(wrong([](WorldState& s) { ++s.shapes[0].users; }), "wrong shapes");
+    EXPECT_EQ(wrong([](WorldState& s) { s.contacts.active.values[0] = s.contacts.active.values[1]; }),
+              "wrong contacts");
+    EXPECT_EQ(wrong([](WorldState& s) { std::swap(s.contacts.active.pairs[0], s.contacts.active.pairs[1]); }),
+              "wrong contacts");
+    EXPECT_EQ(wrong([](WorldState& s) { s.contacts.free.push_back(0); }), "wrong contacts");
+    EXPECT_EQ(wrong([](WorldState& s) { ++s.colliders.shapes[0].users; }), "wrong shapes");
     EXPECT_EQ(wrong([](WorldState& s) { s.colliders[1].next = 1; }), "wrong colliders");
-    EXPECT_EQ(wrong([](WorldState& s) { s.edited_colliders.push_back(0); }), "wrong colliders");
+    EXPECT_EQ(wrong([](WorldState& s) { s.broad_phase.edited_colliders.push_back(0); }), "wrong colliders");
     EXPECT_EQ(wrong([](WorldState& s) { s.bodies.motion[2].position.x = 2e7; }), "a wrong body");
     EXPECT_EQ(wrong([](WorldState& s) { s.bodies.traits[3].inverse_mass *= 2; }), "a wrong body");
     EXPECT_EQ(wrong([](WorldState& s) { s.settings.sub_steps = 0; }), "settings out of range");
-    EXPECT_EQ(wrong([](WorldState& s) { s.boxes.pop_back(); }), "lists of different sizes");
+    EXPECT_EQ(wrong([](WorldState& s) { s.broad_phase.boxes.pop_back(); }), "lists of different sizes");
 }
 
 /// A count of as many elements as there are bytes is refused before the memory for them is allocated.

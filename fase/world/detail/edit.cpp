@@ -5,6 +5,7 @@
 
 #include "fase/core/hash.hpp"
 #include "fase/geometry/bounds.hpp"
+#include "fase/world/detail/collider_places.hpp"
 
 namespace fase {
 
@@ -23,33 +24,28 @@ Error broken_world(const char* where) {
 }
 
 void reserve_body(WorldState& state) {
-    const std::size_t slots = state.body_ids.reserve_adds(1);
+    const std::size_t slots = state.bodies.ids.reserve_adds(1);
     reserve_for(state.bodies.traits, slots);
     reserve_for(state.bodies.motion, slots);
     reserve_for(state.bodies.forces, slots);
-    reserve_for(state.awake, slots);
-    reserve_for(state.awake_added, slots);
-    reserve_for(state.asleep, slots);
+    reserve_for(state.bodies.awake, slots);
+    reserve_for(state.bodies.awake_added, slots);
+    reserve_for(state.bodies.asleep, slots);
 }
 
 void reserve_colliders(WorldState& state, std::size_t count) {
-    const std::size_t slots = state.collider_ids.reserve_adds(count);
-    reserve_for(state.colliders, slots);
-    reserve_for(state.boxes, slots);
-    reserve_for(state.changes, slots);
-    reserve_for(state.set_of, slots);
-    reserve_for(state.edited_colliders, slots);
-}
-
-void mark_edited(WorldState& state, std::uint32_t collider) {
-    mark_box_changed(state, collider);
-    if (!(state.changes[collider] & edited)) state.edited_colliders.push_back(collider);  // reserve_colliders()
-    state.changes[collider] |= edited;
+    const std::size_t slots = state.colliders.ids.reserve_adds(count);
+    reserve_for(state.colliders.all, slots);
+    reserve_for(state.broad_phase.boxes, slots);
+    reserve_for(state.broad_phase.changes, slots);
+    reserve_for(state.broad_phase.set_of, slots);
+    reserve_for(state.broad_phase.edited_colliders, slots);
 }
 
 void update_box(WorldState& state, std::uint32_t collider) {
-    state.boxes[collider] = speculative_box(state, collider, 0, 0);
-    mark_edited(state, collider);
+    state.broad_phase.boxes[collider] =
+        speculative_box(state.bodies, state.colliders, collider, state.settings.speculative_distance);
+    mark_edited(state.broad_phase, state.query, collider);
 }
 
 void update_boxes(WorldState& state, std::uint32_t body) {
@@ -68,7 +64,7 @@ BodyShape shape_of(const WorldState& state, const BodyEdit& edit) {
         for (std::uint32_t c = edit.first_collider; c != no_index; c = state.colliders[c].next) {
             if (c == edit.removed) continue;
             const Collider& collider = state.colliders[c];
-            const SharedShape& shared = state.shapes[collider.shape];
+            const SharedShape& shared = state.colliders.shapes[collider.shape];
             f(shared.shape, collider.in_body, collider.density, collider.sensor, shared.outer_radius,
               shared.inner_radius);
         }
@@ -151,31 +147,32 @@ std::uint64_t content_key(const Shape& shape) {
 
 std::uint32_t share_shape(WorldState& state, const Shape& shape) {
     const std::uint64_t key = content_key(shape);
-    const auto [begin, end] = state.shape_of_key.equal_range(key);
+    const auto [begin, end] = state.colliders.shape_of_key.equal_range(key);
     for (auto at = begin; at != end; ++at)
-        if (state.shapes[at->second].shape == shape) {
-            ++state.shapes[at->second].users;
+        if (state.colliders.shapes[at->second].shape == shape) {
+            ++state.colliders.shapes[at->second].users;
             return at->second;
         }
     SharedShape shared{shape, 1, outer_radius(shape), inner_radius(shape), key};
-    const bool is_new_slot = state.free_shapes.empty();
-    const auto index = is_new_slot ? static_cast<std::uint32_t>(state.shapes.size()) : state.free_shapes.back();
+    const bool is_new_slot = state.colliders.free_shapes.empty();
+    const auto index =
+        is_new_slot ? static_cast<std::uint32_t>(state.colliders.shapes.size()) : state.colliders.free_shapes.back();
     if (is_new_slot) {
-        reserve_for(state.shapes, state.shapes.size() + 1);
-        reserve_for(state.free_shapes, state.shapes.size() + 1);  // release_shape() cannot fail
+        reserve_for(state.colliders.shapes, state.colliders.shapes.size() + 1);
+        reserve_for(state.colliders.free_shapes, state.colliders.shapes.size() + 1);  // release_shape() cannot fail
     }
-    state.shape_of_key.emplace(key, index);
+    state.colliders.shape_of_key.emplace(key, index);
     if (is_new_slot) {
-        state.shapes.push_back(std::move(shared));
+        state.colliders.shapes.push_back(std::move(shared));
     } else {
-        state.free_shapes.pop_back();
-        state.shapes[index] = std::move(shared);
+        state.colliders.free_shapes.pop_back();
+        state.colliders.shapes[index] = std::move(shared);
     }
     return index;
 }
 
 std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const ColliderShape> parts) {
-    const std::size_t slots = state.shapes.size();
+    const std::size_t slots = state.colliders.shapes.size();
     std::vector<std::uint32_t> shared;
     shared.reserve(parts.size());
     try {
@@ -184,9 +181,9 @@ std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const Colli
         // Undone backwards: a new slot is the last one again when its first user goes.
         for (; !shared.empty(); shared.pop_back()) {
             release_shape(state, shared.back());
-            if (shared.back() < slots || state.shapes[shared.back()].users != 0) continue;
-            state.shapes.pop_back();
-            state.free_shapes.pop_back();
+            if (shared.back() < slots || state.colliders.shapes[shared.back()].users != 0) continue;
+            state.colliders.shapes.pop_back();
+            state.colliders.free_shapes.pop_back();
         }
         throw;
     }
@@ -194,16 +191,16 @@ std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const Colli
 }
 
 void release_shape(WorldState& state, std::uint32_t index) {
-    SharedShape& shared = state.shapes[index];
+    SharedShape& shared = state.colliders.shapes[index];
     if (--shared.users != 0) return;
-    const auto [begin, end] = state.shape_of_key.equal_range(shared.key);
+    const auto [begin, end] = state.colliders.shape_of_key.equal_range(shared.key);
     for (auto at = begin; at != end; ++at)
         if (at->second == index) {
-            state.shape_of_key.erase(at);
+            state.colliders.shape_of_key.erase(at);
             break;
         }
     shared = {};
-    state.free_shapes.push_back(index);
+    state.colliders.free_shapes.push_back(index);
 }
 
 }  // namespace fase

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "fase/world/check_values.hpp"
+#include "fase/world/detail/motion_states.hpp"
 #include "fase/world/detail/state.hpp"
 #include "fase/world/world.hpp"
 
@@ -47,7 +48,7 @@ template <class V> void reserve_for(V& v, std::size_t size) {
 }
 /// Allocates for `count` calls of request_wake() or disturb().
 inline void reserve_wakes(WorldState& state, std::size_t count) {
-    reserve_for(state.bodies_to_wake, state.bodies_to_wake.size() + count);
+    reserve_for(state.bodies.to_wake, state.bodies.to_wake.size() + count);
 }
 /// Allocates what one more body or `count` more colliders need; the next edits of any body then allocate nothing for
 /// them.

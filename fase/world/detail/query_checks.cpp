@@ -77,7 +77,7 @@ bool passes_filter(const WorldState& state, const QueryFilter& filter, std::uint
     if (collider.sensor && !filter.sensors) return false;
     if (filter.mask != QueryFilter::all && (collider.filter.category & filter.mask) == 0) return false;
     if (filter.category != QueryFilter::all && (collider.filter.mask & filter.category) == 0) return false;
-    if (filter.ignored.index == collider.body && state.body_ids.contains(filter.ignored)) return false;
+    if (filter.ignored.index == collider.body && state.bodies.ids.contains(filter.ignored)) return false;
     if (!filter.accepts) return true;
     const Found it = found(state, index);
     return filter.accepts(it.body, it.collider);

@@ -4,9 +4,10 @@
 #include <string>
 
 #include "fase/core/detail/float_mode.hpp"
+#include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/edit.hpp"
-#include "fase/world/detail/query_trees.hpp"
 #include "fase/world/detail/state_access.hpp"
+#include "fase/world/detail/visit_trees.hpp"
 #include "fase/world/query.hpp"
 
 namespace fase::world_queries {
@@ -37,10 +38,10 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where);
 [[nodiscard]] bool passes_filter(const WorldState& state, const QueryFilter& filter, std::uint32_t collider);
 
 [[nodiscard]] inline Found found(const WorldState& state, std::uint32_t collider) {
-    return {*state.body_ids.id_at(state.colliders[collider].body), *state.collider_ids.id_at(collider)};
+    return {*state.bodies.ids.id_at(state.colliders[collider].body), *state.colliders.ids.id_at(collider)};
 }
 [[nodiscard]] inline const Shape& shape_of(const WorldState& state, std::uint32_t collider) {
-    return state.shapes[state.colliders[collider].shape].shape;
+    return state.colliders.shapes[state.colliders[collider].shape].shape;
 }
 
 /// Updates the query trees, then returns `query(state)`, which is of type R or convertible to it. Busy inside a step;
@@ -51,7 +52,7 @@ template <class R, class F> R run_query(const World& world, const char* where, c
         if (state.stepping) return Error{Status::Busy, where, "called from inside a step", "call it after"};
         if (state.broken) return broken_world(where);
         const StandardFloats floats;
-        prepare_trees(state);
+        prepare_query_trees(state.bodies, state.colliders, state.broad_phase, state.query);
         return query(state);
     } catch (const std::bad_alloc&) {
         return out_of_memory("query");

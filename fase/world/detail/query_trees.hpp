@@ -1,127 +1,57 @@
 #pragma once
-/// Traversal of the query trees, with corrections for boxes that are out of date.
-///
-/// Queries use separate trees, one for each motion state. Two things make a tree differ from the world. First, edits
-/// between steps: they are recorded, and the first query after them applies them. Second, a step moves bodies after it
-/// has stored their boxes, so shapes may stick out of their boxes at its end, most of them by less than the margin of
-/// the fat boxes. The end of the step, or the first query after an edit, measures by how much they stick out. The few
-/// colliders that stick out farthest (outliers) are tested one by one. The largest distance of the others (the
-/// overhang) enlarges the query volume. None of this changes the state that is hashed, saved or stepped.
-#include <algorithm>
-#include <cmath>
+/// The trees that queries between steps traverse (world/detail/visit_trees.hpp).
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <vector>
 
-#include "fase/geometry/bounds.hpp"
-#include "fase/world/detail/state.hpp"
+#include "fase/broad/wide_bvh.hpp"
+#include "fase/world/detail/tables.hpp"
 
-namespace fase::world_queries {
+namespace fase {
 
-/// Updates `state.query`. Thread-safe between steps. O(1) when the trees exist and nothing was edited since the last
-/// step; the first query builds the trees in about 0.3 µs a collider.
-void prepare_trees(const WorldState& state);
+/// The trees of queries, one for each motion state. The structures of the broad phase are chosen for pair finding; rays
+/// need a tree. The first query builds the trees. Later changes are recorded, and applied at the end of each step or by
+/// the first query after an edit, under the lock. Query trees are freed after 60 steps without a query. They are no
+/// part of hash or snapshot, and no stage of the simulation reads them.
+struct QueryTrees {
+    std::atomic<bool> ready = false;    ///< the trees are committed, and all members below are current
+    std::atomic<bool> queried = false;  ///< a query ran since the last step
+    std::mutex lock;
+    bool built = false;  ///< the trees exist
+    std::uint32_t steps_without_query = 0;
+    std::array<broad::WideBvh, 3> trees;  ///< by MotionState
+    /// By collider: 0 when it is in no tree, else 1 + the MotionState of its tree. The bit `is_pending` is set while
+    /// the collider is in `pending`.
+    std::vector<std::uint8_t> tree_of;
+    static constexpr std::uint8_t is_pending = 0x80;
+    std::vector<std::uint32_t> pending;  ///< colliders that were added, removed or moved, or changed their motion state
 
-/// Returns the world box of a collider's shape at its current pose, without margin.
-[[nodiscard]] inline Aabb tight_box(const WorldState& state, std::uint32_t collider) {
-    const Collider& c = state.colliders[collider];
-    return bounds(state.shapes[c.shape].shape, world_pose(state, c));
+    bool bodies_moved = true;  ///< a step moved bodies since `outliers` and `awake_overhang` were computed
+    /// Metres by which shapes may stick out of their boxes in the tree, on every side.
+    float asleep_overhang = 0, awake_overhang = 0;
+    /// The few awake colliders that stick out farthest, by index, with their current boxes. They do not count in the
+    /// overhangs.
+    std::vector<broad::Move> outliers;
+};
+
+/// Call at the beginning of a step, which moves bodies: queries must wait for its end.
+inline void begin_step(QueryTrees& query) {
+    query.bodies_moved = true;
+    query.ready.store(false, std::memory_order_relaxed);
 }
+/// Call when a collider is added or removed, or when its box or the motion state of its body changes. Records the
+/// change for the query trees.
+void mark_box_changed(QueryTrees& query, std::uint32_t collider) noexcept;
+/// Updates the asleep overhang with the colliders of these bodies, which have just fallen asleep.
+void measure_asleep_overhang(const BodyTable& bodies, const ColliderTable& colliders, const BroadPhase& broad_phase,
+                             QueryTrees& query, std::span<const std::uint32_t> fallen_asleep);
+/// Updates the trees, and measures how far shapes stick out of the boxes in them. Thread-safe between steps. O(1) when
+/// the trees exist and nothing was edited since the last step; the first query builds the trees in about 0.3 µs a
+/// collider.
+void prepare_query_trees(const BodyTable& bodies, const ColliderTable& colliders, const BroadPhase& broad_phase,
+                         QueryTrees& query);
 
-[[nodiscard]] inline bool is_outlier(const WorldState& state, std::uint32_t collider) {
-    const auto& outliers = state.query.outliers;
-    if (outliers.empty()) return false;
-    const auto at = std::lower_bound(outliers.begin(), outliers.end(), collider,
-                                     [](const broad::Move& m, std::uint32_t c) { return m.proxy < c; });
-    return at != outliers.end() && at->proxy == collider;
-}
-
-/// Calls f(tree, overhang) for each tree that is not empty.
-template <class F> void for_each_tree(const WorldState& state, const F& f) {
-    const QueryTrees& query = state.query;
-    const std::array<float, 3> overhang{0, query.asleep_overhang, query.awake_overhang};  // by MotionState
-    for (std::size_t i = 0; i < query.trees.size(); ++i)
-        if (query.trees[i].size() != 0) f(query.trees[i], overhang[i]);
-}
-
-/// Returns the smallest float that is at least `value`.
-[[nodiscard]] inline float float_above(double value) {
-    const float f = static_cast<float>(value);
-    return double(f) < value ? std::nextafter(f, Aabb::infinity) : f;
-}
-/// Returns the largest float that is at most `value`.
-[[nodiscard]] inline float float_below(double value) { return -float_above(-value); }
-
-/// Calls visit(collider, entry) once for each collider whose box is hit by the ray, or by a box swept along the ray
-/// that extends from `before` to `after` around its origin. `entry` is the distance to the box in metres, never more
-/// than the distance to the shape. `visit` returns the new search distance; below 0 stops.
-template <class Visit>
-void visit_along(const WorldState& state, const Ray& ray, Vec3 before, Vec3 after, const Visit& visit) {
-    float limit = ray.length;
-    for_each_tree(state, [&](const broad::WideBvh& tree, float overhang) {
-        if (limit < 0) return;
-        const Vec3d out{overhang, overhang, overhang};
-        const Aabb swept =
-            overhang > 0 ? rounded_outward(to_double(before) - out, to_double(after) + out) : Aabb{before, after};
-        tree.nearest_first(broad::RayMeasure(ray, swept.lo, swept.hi), limit,
-                           [&](broad::Proxy p, const Aabb&, float entry) {
-                               if (!is_outlier(state, p)) limit = visit(p, entry);
-                               return limit;
-                           });
-    });
-    const broad::RayMeasure measure(ray, before, after);
-    for (const broad::Move& outlier : state.query.outliers) {
-        if (limit < 0) return;
-        const float entry = measure.distance(outlier.box, limit);
-        if (entry < broad::infinite_distance) limit = visit(outlier.proxy, entry);
-    }
-}
-
-/// Calls visit(collider) once for each collider whose box touches `box`, until `visit` returns false.
-template <class Visit> void visit_overlapping(const WorldState& state, const Aabb& box, const Visit& visit) {
-    bool more = true;
-    for_each_tree(state, [&](const broad::WideBvh& tree, float overhang) {
-        if (!more) return;
-        tree.traverse(broad::BoxRegion{enlarged(box, overhang)}, [&](broad::Proxy p, const Aabb&) {
-            if (!is_outlier(state, p)) more = visit(p);
-            return more;
-        });
-    });
-    for (const broad::Move& outlier : state.query.outliers)
-        if (more && overlaps(outlier.box, box)) more = visit(outlier.proxy);
-}
-
-/// Calls visit(collider) once for each collider whose box is within `radius` metres of a point. `visit` returns the new
-/// search distance.
-template <class Visit> void visit_near(const WorldState& state, Vec3d point, float radius, const Visit& visit) {
-    float limit = radius;
-    for_each_tree(state, [&](const broad::WideBvh& tree, float overhang) {
-        const double extra = 1.7320509 * double(overhang);  // along the diagonal
-        const auto wider = [&] { return float_above(double(limit) + extra); };
-        tree.nearest_first(broad::PointMeasure(point, wider()), wider(), [&](broad::Proxy p, const Aabb&, float) {
-            if (!is_outlier(state, p)) limit = visit(p);
-            return wider();
-        });
-    });
-    for (const broad::Move& outlier : state.query.outliers)
-        if (broad::PointMeasure(point, limit).distance(outlier.box, limit) < broad::infinite_distance)
-            limit = visit(outlier.proxy);
-}
-
-/// Calls visit(collider, inside) once for each collider whose box may be in the frustum. `inside` is true when the
-/// shape is certainly inside all planes.
-template <class Visit> void visit_in_frustum(const WorldState& state, const Frustum& frustum, const Visit& visit) {
-    for_each_tree(state, [&](const broad::WideBvh& tree, float overhang) {
-        Frustum wider = frustum;
-        for (Frustum::Side& side : wider.sides) {
-            const Vec3d size = abs(side.normal);
-            const double sum = size.x + size.y + size.z;
-            if (sum > 0) side.offset += sum * double(overhang);
-        }
-        tree.cull(broad::FrustumRegion(wider), [&](std::span<const broad::Proxy> proxies, bool inside) {
-            for (const broad::Proxy p : proxies)
-                if (!is_outlier(state, p)) visit(p, inside && overhang == 0);
-        });
-    });
-    for (const broad::Move& outlier : state.query.outliers)
-        if (overlaps(frustum, outlier.box)) visit(outlier.proxy, false);
-}
-
-}  // namespace fase::world_queries
+}  // namespace fase

@@ -1,0 +1,58 @@
+#pragma once
+/// What the stages of a step hand to each other. Each struct is named for what its stage produces; the next step
+/// replaces it. No part of hash or snapshot.
+#include <cstdint>
+#include <vector>
+
+#include "fase/dynamics/solver/constraint.hpp"
+#include "fase/dynamics/solver/contact_lanes.hpp"
+#include "fase/dynamics/solver/islands.hpp"
+#include "fase/geometry/aabb.hpp"
+
+namespace fase {
+
+/// From "refresh": what will move in this step.
+struct Moved {
+    std::vector<std::uint32_t> colliders;  ///< those that left their fat box
+    std::vector<Aabb> previous_boxes;      ///< by collider, valid for those: the fat box before this step
+    std::vector<float> sweep;              ///< by body: metres that a fast body may move; 0 for slow bodies
+    std::vector<std::uint32_t> clamped;    ///< bodies whose speed was clamped before the step, ascending
+};
+
+/// From "collide": the constraints of this step. "islands" and "solve" list them again when active contacts were added
+/// or bodies were quarantined; the solver fills the results.
+struct Constraints {
+    std::vector<dynamics::Constraint> all;         ///< manifolds with points, in the order of ContactTable::active
+    std::vector<dynamics::ContactResult> results;  ///< one for each constraint
+    std::vector<std::uint32_t> sensors;  ///< active contacts of sensors, which are collided after the bodies moved
+    std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
+    std::vector<std::uint8_t> reused;    ///< by active pair: the manifolds of the last step were reused
+    std::vector<std::uint8_t> roles;     ///< by body, inside gather_constraints(): what contacts do to it
+};
+
+/// A body that is struck, and the momentum of what strikes it in kg m/s.
+struct Blow {
+    std::uint32_t body = 0;
+    float momentum = 0;
+};
+
+/// Inside "islands". Its result is BodyMotion::island.
+struct IslandLists {
+    std::vector<Blow> blows;
+    dynamics::DisjointSets sets;  ///< of bodies
+};
+
+/// Whether an island may fall asleep.
+struct IslandActivity {
+    std::uint32_t bodies = 0, active_bodies = 0;
+    bool must_stay_awake = false;  ///< a body moves too fast, or may not sleep
+};
+
+/// Inside "sleep".
+struct SleepLists {
+    std::vector<IslandActivity> activity;   ///< by island
+    std::vector<std::uint32_t> kept_awake;  ///< bodies
+    std::vector<std::uint32_t> below;       ///< bodies, inside keep_below()
+};
+
+}  // namespace fase
