@@ -23,7 +23,7 @@ template <class Tag> struct Id {
 /// Returns a well-mixed hash: std::unordered_map<BodyId, Score> works.
 template <class Tag> [[nodiscard]] constexpr std::size_t hash_of(Id<Tag> id) noexcept {
     std::uint64_t bits = std::uint64_t{id.index} << 32 | std::uint64_t{id.generation} << 16 | id.owner;
-    bits = (bits ^ bits >> 32) * 0xd6e8feb86659fd93u;
+    for (int round = 0; round < 2; ++round) bits = (bits ^ bits >> 32) * 0xd6e8feb86659fd93u;
     return static_cast<std::size_t>(bits ^ bits >> 32);
 }
 
@@ -110,21 +110,11 @@ public:
         alive_ = alive;
         return true;
     }
-    /// Call after restore(), with the state that this one replaces: no id that `before` issued is issued again. With
-    /// `renew`, ids in use that `before` has issued, too, get a new generation. Returns false when a slot in use has no
-    /// generation left for that.
-    [[nodiscard]] bool continue_after(const IdPool& before, bool renew) {
-        if (newest_.size() < before.newest_.size()) newest_.resize(before.newest_.size(), 0);
-        for (std::size_t i = 0; i < before.newest_.size(); ++i) {
-            const bool is_renewed =
-                renew && alive_at(static_cast<std::uint32_t>(i)) && slots_[i].generation <= before.newest_[i];
-            newest_[i] = std::max(newest_[i], before.newest_[i]);
-            if (!is_renewed) continue;
-            if (newest_[i] == last_generation) return false;
-            slots_[i].generation = ++newest_[i];
-        }
+    /// Call after restore(), with newest() of the state that this one replaces: no id that it issued is issued again.
+    void continue_after(const std::vector<std::uint16_t>& before) {
+        if (newest_.size() < before.size()) newest_.resize(before.size(), 0);
+        for (std::size_t i = 0; i < before.size(); ++i) newest_[i] = std::max(newest_[i], before[i]);
         std::erase_if(free_, [&](std::uint32_t index) { return newest_[index] == last_generation; });
-        return true;
     }
 
 private:

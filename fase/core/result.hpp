@@ -1,6 +1,7 @@
 #pragma once
 /// A value or an error with a message; replaces std::expected, which g++ 12 in C++20 lacks.
 #include <cassert>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <variant>
@@ -58,6 +59,10 @@ template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
     Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+    /// From a result whose value converts implicitly.
+    template <class U>
+        requires(!std::same_as<U, T> && std::convertible_to<const U&, T>)
+    Result(const Result<U>& other) : Result(other ? Result(static_cast<T>(*other)) : Result(other.error())) {}
     explicit operator bool() const { return state_.index() == 0; }
     [[nodiscard]] bool has_value() const { return state_.index() == 0; }
     T& operator*() & {

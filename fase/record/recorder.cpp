@@ -77,7 +77,7 @@ struct Recorder::State {
     template <class Pair> Result<bool> set_pair(const World& world, ColliderId a, ColliderId b, Pair& pair);
     template <class Event>
     Result<void> read_pairs(const World& world, const std::vector<Event>& events, std::vector<ColliderPair>& pairs,
-                            ColliderId Event::*a, ColliderId Event::*b);
+                            EventCollider Event::*a, EventCollider Event::*b);
 
     RecordingWriter writer;
     bool contacts = false;
@@ -231,7 +231,8 @@ Result<bool> Recorder::State::set_pair(const World& world, ColliderId a, Collide
 
 template <class Event>
 Result<void> Recorder::State::read_pairs(const World& world, const std::vector<Event>& events,
-                                         std::vector<ColliderPair>& pairs, ColliderId Event::*a, ColliderId Event::*b) {
+                                         std::vector<ColliderPair>& pairs, EventCollider Event::*a,
+                                         EventCollider Event::*b) {
     pairs.clear();
     for (const Event& event : events) {
         ColliderPair pair;

@@ -62,8 +62,9 @@ void unlink_collider(WorldState& state, std::uint32_t index) {
     *link = state.colliders[index].next;
 }
 
-/// Removes a collider from everything except the collider list of its body.
+/// Removes a collider from everything except the collider list of its body. `removed` has room.
 void drop_collider(WorldState& state, std::uint32_t index) {
+    state.contacts.removed.push_back(event_collider(state.bodies, state.colliders, index));
     release_shape(state, state.colliders[index].shape);
     state.colliders.ids.remove(*state.colliders.ids.id_at(index));
     mark_edited(state.broad_phase, state.query, index);
@@ -87,7 +88,7 @@ ColliderId new_collider(WorldState& state, std::uint32_t body, std::uint32_t sha
     collider.material = def.material;
     collider.density = def.density;
     collider.filter = def.filter;
-    collider.user = def.user;
+    collider.user = def.user != 0 ? def.user : state.bodies.traits[body].user;
     return id;
 }
 
@@ -107,16 +108,23 @@ ColliderId make_collider(WorldState& state, std::uint32_t body, std::uint32_t sh
 }
 
 /// Gives a new body all its colliders after reserve_colliders(). `shared` are their shapes; `shape` that of the body.
-void make_colliders(WorldState& state, std::uint32_t body, std::span<const ColliderShape> parts,
-                    std::span<const std::uint32_t> shared, const BodyShape& shape) {
-    std::uint32_t last = no_index;
+/// Returns the first.
+ColliderId make_colliders(WorldState& state, std::uint32_t body, std::span<const ColliderShape> parts,
+                          std::span<const std::uint32_t> shared, const BodyShape& shape) {
+    ColliderId first, last;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        const std::uint32_t made = new_collider(state, body, shared[i], parts[i].def).index;
-        (last == no_index ? state.bodies.traits[body].first_collider : state.colliders[last].next) = made;
+        const ColliderId made = new_collider(state, body, shared[i], parts[i].def);
+        if (i == 0) {
+            first = made;
+            state.bodies.traits[body].first_collider = made.index;
+        } else {
+            state.colliders[last.index].next = made.index;
+        }
         last = made;
     }
     set_shape(state, body, shape);
     update_boxes(state, body);
+    return first;
 }
 
 /// The body of a definition, without colliders.
@@ -130,8 +138,8 @@ BodyEdit edit_of(const BodyDef& def) {
 
 }  // namespace
 
-Result<BodyId> World::add_body(const BodyDef& def) {
-    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+Result<NewBody> World::add_body(const BodyDef& def) {
+    return guarded(*state_, "World::add_body", [&]() -> Result<NewBody> {
         if (auto checked = check(def); !checked) return checked.error();
         if (state_->stepping)
             return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
@@ -139,12 +147,12 @@ Result<BodyId> World::add_body(const BodyDef& def) {
             checked_shape_of(*state_, edit_of(def), {def.position, normalized(def.rotation)}, "BodyDef: ");
         if (!shape) return shape.error();
         reserve_body(*state_);
-        return make_body(*state_, def, *shape);
+        return NewBody{make_body(*state_, def, *shape), {}};
     });
 }
 
-Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider) {
-    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+Result<NewBody> World::add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider) {
+    return guarded(*state_, "World::add_body", [&]() -> Result<NewBody> {
         WorldState& state = *state_;
         if (auto checked = check_collider(def.kind, shape, collider); !checked) return checked.error();
         if (auto checked = check(def); !checked) return checked.error();
@@ -161,15 +169,15 @@ Result<BodyId> World::add_body(const BodyDef& def, const Shape& shape, const Col
         reserve_colliders(state, 1);
         const std::uint32_t shared = share_shape(state, shape);
         const BodyId body = make_body(state, def, *bare);
-        make_collider(state, body.index, shared, collider, *complete);
+        const ColliderId made = make_collider(state, body.index, shared, collider, *complete);
         // The collider may have moved the centre of mass; BodyDef gives the velocity of the new one.
         if (def.kind != BodyKind::Static) state.bodies.motion[body.index].linear_velocity = def.linear_velocity;
-        return body;
+        return NewBody{body, made};
     });
 }
 
-Result<BodyId> World::add_body(const BodyDef& def, std::span<const ColliderShape> colliders) {
-    return guarded(*state_, "World::add_body", [&]() -> Result<BodyId> {
+Result<NewBody> World::add_body(const BodyDef& def, std::span<const ColliderShape> colliders) {
+    return guarded(*state_, "World::add_body", [&]() -> Result<NewBody> {
         WorldState& state = *state_;
         for (std::size_t i = 0; i < colliders.size(); ++i)
             if (auto checked = check_collider(def.kind, colliders[i].shape, colliders[i].def); !checked) {
@@ -190,10 +198,10 @@ Result<BodyId> World::add_body(const BodyDef& def, std::span<const ColliderShape
         reserve_colliders(state, colliders.size());
         const std::vector<std::uint32_t> shared = share_shapes(state, colliders);
         const BodyId body = make_body(state, def, *bare);
-        make_colliders(state, body.index, colliders, shared, *complete);
+        const ColliderId first = make_colliders(state, body.index, colliders, shared, *complete);
         // The colliders have moved the centre of mass; BodyDef gives the velocity of the new one.
         if (def.kind != BodyKind::Static) state.bodies.motion[body.index].linear_velocity = def.linear_velocity;
-        return body;
+        return NewBody{body, first};
     });
 }
 
@@ -228,6 +236,7 @@ Result<void> World::remove_collider(ColliderId collider) {
         const auto rest = checked_shape_of(state, edit, pose, "World::remove_collider: ");
         if (!rest) return rest.error();
         reserve_wakes(state, 1);
+        reserve_for(state.contacts.removed, state.contacts.removed.size() + 1);
         disturb(state.bodies, body);
         unlink_collider(state, collider.index);
         drop_collider(state, collider.index);
@@ -241,6 +250,11 @@ Result<void> World::remove_body(BodyId body) {
     return guarded(*state_, "remove_body", [&]() -> Result<void> {
         if (!contains(body)) return stale_id("World::remove_body");
         WorldState& state = *state_;
+        std::size_t colliders = 0;
+        for (std::uint32_t c = state.bodies.traits[body.index].first_collider; c != no_index;
+             c = state.colliders[c].next)
+            ++colliders;
+        reserve_for(state.contacts.removed, state.contacts.removed.size() + colliders);
         for (std::uint32_t c = state.bodies.traits[body.index].first_collider; c != no_index;) {
             const std::uint32_t next = state.colliders[c].next;
             drop_collider(state, c);

@@ -46,7 +46,14 @@ struct ColliderDef {
     float density = 1000;  ///< kg/m³; used for bodies whose mass is not given; 0: no mass
     pairs::CollisionFilter filter{};
     bool sensor = false;     ///< reports overlaps as events; applies no forces and has no mass
-    std::uint64_t user = 0;  ///< user data
+    std::uint64_t user = 0;  ///< user data; 0: that of its body
+};
+
+/// The ids of a new body and of its first collider, which is the default id when it has none. Serves as the body's id.
+struct NewBody {
+    BodyId body;
+    ColliderId collider;
+    operator BodyId() const { return body; }
 };
 
 /// One part of a compound: World::add_body().

@@ -46,25 +46,52 @@ void update_materials(const ColliderTable& colliders, ContactTable& contacts, st
     }
 }
 
+EventCollider event_collider(const BodyTable& bodies, const ColliderTable& colliders, std::uint32_t index) {
+    const Collider& collider = colliders[index];
+    EventCollider event{*colliders.ids.id_at(index)};
+    event.body = *bodies.ids.id_at(collider.body);
+    event.user = collider.user;
+    event.body_user = bodies.traits[collider.body].user;
+    return event;
+}
+
+std::array<EventCollider, 2> event_colliders(const BodyTable& bodies, const ColliderTable& colliders,
+                                             const ContactTable& contacts, const Contact& contact) {
+    const auto event = [&](const ContactSide& side) {
+        if (is_current(colliders, side.collider, side.generation))
+            return event_collider(bodies, colliders, side.collider);
+        const auto was = [&](const EventCollider& removed) {
+            return removed.index == side.collider && removed.generation == side.generation;
+        };
+        const auto removed = std::ranges::find_if(contacts.removed, was);
+        return removed != contacts.removed.end()
+                   ? *removed
+                   : EventCollider{{side.collider, side.generation, colliders.ids.owner()}};
+    };
+    const auto [a, b] = sides_of(contact);
+    return {event(a), event(b)};
+}
+
 namespace {
 
 /// Records that two colliders began or ended to touch.
-void report_touch(const ColliderTable& colliders, Events& events, const Contact& c, bool begins) {
-    const ContactEvent ids{{c.collider_a, c.generation_a, colliders.ids.owner()},
-                           {c.collider_b, c.generation_b, colliders.ids.owner()}};
+void report_touch(const BodyTable& bodies, const ColliderTable& colliders, const ContactTable& contacts, Events& events,
+                  const Contact& c, bool begins) {
+    const auto [a, b] = event_colliders(bodies, colliders, contacts, c);
     if (c.sensor) {
-        const SensorEvent event = c.sensor_is_b ? SensorEvent{ids.b, ids.a} : SensorEvent{ids.a, ids.b};
+        const SensorEvent event = c.sensor_is_b ? SensorEvent{b, a} : SensorEvent{a, b};
         (begins ? events.sensors_begun : events.sensors_ended).push_back(event);
     } else {
-        (begins ? events.contacts_begun : events.contacts_ended).push_back(ids);
+        (begins ? events.contacts_begun : events.contacts_ended).push_back({a, b});
     }
 }
 
 }  // namespace
 
-void set_touching(BodyTable& bodies, const ColliderTable& colliders, Events& events, Contact& contact, bool touching) {
+void set_touching(BodyTable& bodies, const ColliderTable& colliders, const ContactTable& contacts, Events& events,
+                  Contact& contact, bool touching) {
     if (contact.touching == touching) return;
-    report_touch(colliders, events, contact, touching);
+    report_touch(bodies, colliders, contacts, events, contact, touching);
     contact.touching = touching;
     if (contact.sensor || touching) return;
     // What is no longer held must not fall asleep on the rest it had. It wakes alone, without its island.
@@ -77,7 +104,7 @@ void set_touching(BodyTable& bodies, const ColliderTable& colliders, Events& eve
 
 void end_contact(BodyTable& bodies, const ColliderTable& colliders, ContactTable& contacts, Events& events,
                  std::uint32_t index) {
-    set_touching(bodies, colliders, events, contacts[index], false);
+    set_touching(bodies, colliders, contacts, events, contacts[index], false);
     if (contacts.graph.resting_at(index) != no_index) remove_resting(contacts, index);
     contacts.graph.remove(index);
     Contact& contact = contacts[index];

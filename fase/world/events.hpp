@@ -7,14 +7,20 @@
 
 namespace fase {
 
+/// A collider in an event: its id, its body, and the user data of both. All stay readable until the next step, though
+/// the collider may be removed by then.
+struct EventCollider : ColliderId {
+    BodyId body;
+    std::uint64_t user = 0, body_user = 0;
+};
 /// Two colliders began or stopped touching; a has the smaller index. The id of a collider that was removed is stale.
 struct ContactEvent {
-    ColliderId a, b;
+    EventCollider a, b;
     friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
 };
 /// Two colliders hit each other faster than Settings::restitution_threshold.
 struct HitEvent {
-    ColliderId a, b;
+    EventCollider a, b;
     Vec3d point;        ///< world, where the surfaces met, at the moment of touch
     Vec3 normal;        ///< unit, from a to b
     float speed = 0;    ///< m/s of approach, before the hit
@@ -22,7 +28,7 @@ struct HitEvent {
 };
 /// `visitor` began or stopped overlapping `sensor`.
 struct SensorEvent {
-    ColliderId sensor, visitor;
+    EventCollider sensor, visitor;
     friend bool operator==(const SensorEvent&, const SensorEvent&) = default;
 };
 

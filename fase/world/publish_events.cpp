@@ -20,11 +20,6 @@ struct EventTables {
     Events& events;
 };
 
-ContactEvent ids_of(const ColliderTable& colliders, const Contact& c) {
-    return {{c.collider_a, c.generation_a, colliders.ids.owner()},
-            {c.collider_b, c.generation_b, colliders.ids.owner()}};
-}
-
 /// Hysteresis: touching begins within the slop and ends beyond twice the slop, so that a resting contact does not
 /// flicker.
 bool touches(float slop, const Contact& c, float nearest, bool pushes) {
@@ -48,12 +43,11 @@ void publish_contact(const EventTables& tables, Contact& c, std::size_t first) {
         approach = std::max(approach, result.approach);
         if (result.impulse > constraints.results[hardest].impulse) hardest = i;
     }
-    set_touching(bodies, colliders, events, c, touches(settings.linear_slop, c, nearest, pushes));
+    set_touching(bodies, colliders, contacts, events, c, touches(settings.linear_slop, c, nearest, pushes));
     if (!pushes || !(approach > settings.restitution_threshold)) return;
-    const ContactEvent ids = ids_of(colliders, c);
+    const auto [a, b] = event_colliders(bodies, colliders, contacts, c);
     const Vec3d place = bodies.motion[c.body_a].position + to_double(constraints.results[hardest].hit_offset_a);
-    events.hits.push_back(
-        {ids.a, ids.b, place, contacts.manifolds[constraints.all[hardest].index].normal, approach, impulse});
+    events.hits.push_back({a, b, place, contacts.manifolds[constraints.all[hardest].index].normal, approach, impulse});
 }
 
 template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
@@ -65,7 +59,7 @@ template <class E, class F> void sort_by(std::vector<E>& events, const F& key) {
 void publish_events(const Settings& settings, const ColliderTable& colliders, const Constraints& constraints,
                     BodyTable& bodies, ContactTable& contacts, Events& events) {
     const auto set_touching_now = [&](Contact& c) {
-        set_touching(bodies, colliders, events, c, touches(settings.linear_slop, c, c.nearest, false));
+        set_touching(bodies, colliders, contacts, events, c, touches(settings.linear_slop, c, c.nearest, false));
     };
     for (const std::uint32_t index : constraints.checked)  // one that woke in this step is in the active list now
         if (Contact& c = contacts[index]; contacts.graph.resting_at(index) != no_index) set_touching_now(c);

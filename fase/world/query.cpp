@@ -24,8 +24,8 @@ struct Nearest {
 };
 
 RayHit ray_hit(const WorldState& state, const Ray& ray, const Nearest& nearest, Vec3 normal) {
-    const Found it = found(state, nearest.collider);
-    return {it.body, it.collider, static_cast<float>(nearest.distance), point_at(ray, nearest.distance), normal};
+    return {found(state, nearest.collider), static_cast<float>(nearest.distance), point_at(ray, nearest.distance),
+            normal};
 }
 
 std::optional<narrow::RayOnShape> exact_hit(const WorldState& state, const Ray& ray, std::uint32_t collider) {
@@ -156,8 +156,8 @@ Result<std::optional<ShapeHit>> cast_shape(const World& world, const Shape& shap
             return limit_of(ray, nearest);
         });
         if (!nearest.found_any()) return std::optional<ShapeHit>();
-        const Found it = found(state, nearest.collider);
-        return std::optional(ShapeHit{it.body, it.collider, float_below(nearest.distance), touch.point, touch.normal});
+        return std::optional(
+            ShapeHit{found(state, nearest.collider), float_below(nearest.distance), touch.point, touch.normal});
     });
 }
 

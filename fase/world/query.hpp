@@ -31,17 +31,16 @@ struct QueryFilter {
     std::function<bool(BodyId, ColliderId)> accepts{};
 };
 
-/// A collider and its body.
+/// A collider and its body, with the user data of both.
 struct Found {
     BodyId body;
     ColliderId collider;
+    std::uint64_t user = 0, body_user = 0;
     friend bool operator==(const Found&, const Found&) = default;
 };
 
 /// The point where a ray hits a collider.
-struct RayHit {
-    BodyId body;
-    ColliderId collider;
+struct RayHit : Found {
     float distance = 0;  ///< metres from the ray's origin; hits are sorted before the rounding to float
     Vec3d point;         ///< world
     Vec3 normal;         ///< unit, world, against the ray; the reversed ray direction when the ray starts inside
@@ -49,9 +48,7 @@ struct RayHit {
 };
 
 /// The first contact of a moving shape with a collider.
-struct ShapeHit {
-    BodyId body;
-    ColliderId collider;
+struct ShapeHit : Found {
     float distance = 0;  ///< metres that the shape moves, rounded down so that it does not overlap there
     Vec3d point;         ///< world, on the collider
     Vec3 normal;         ///< unit, world, from the collider to the shape
@@ -59,9 +56,7 @@ struct ShapeHit {
 };
 
 /// The distance of a collider from a point.
-struct NearHit {
-    BodyId body;
-    ColliderId collider;
+struct NearHit : Found {
     float distance = 0;  ///< metres to the shape; 0 inside
     Vec3d point;         ///< the nearest point of the shape, world; the query point when it is inside
     friend bool operator==(const NearHit&, const NearHit&) = default;

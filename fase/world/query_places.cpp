@@ -186,8 +186,7 @@ Result<void> nearest(const World& world, Vec3d point, std::size_t k, float radiu
         std::sort_heap(best.begin(), best.end());
         if (out.capacity() - out.size() < best.size()) out.reserve(std::max(out.size() + best.size(), 2 * out.size()));
         for (const Near& n : best) {
-            const Found it = found(state, n.collider);
-            out.push_back({it.body, it.collider, static_cast<float>(n.distance), n.point});
+            out.push_back({found(state, n.collider), static_cast<float>(n.distance), n.point});
         }
         return {};
     });

@@ -19,10 +19,13 @@ Vec3 limited(Vec3 v, float max, bool& clamped) {
     return to_float(exact * (double(max) / std::sqrt(squared)));
 }
 
-/// Clamps the velocities of all bodies before anything moves. The solver clamps again after forces.
-void limit_speeds(const Settings& settings, BodyTable& bodies, Moved& moved) {
+/// Clamps the velocities of all bodies before anything moves, and counts those without a mass. The solver clamps again
+/// after forces.
+void limit_speeds(const Settings& settings, BodyTable& bodies, Moved& moved, StepReport& report) {
     moved.clamped.clear();
     for (const std::uint32_t body : bodies.awake) {
+        const dynamics::BodyTraits& traits = bodies.traits[body];
+        report.without_mass += traits.kind == BodyKind::Dynamic && traits.inverse_mass == 0 ? 1 : 0;
         dynamics::BodyMotion& motion = bodies.motion[body];
         bool clamped = false;
         motion.linear_velocity = limited(motion.linear_velocity, settings.max_linear_speed, clamped);
@@ -36,7 +39,7 @@ void limit_speeds(const Settings& settings, BodyTable& bodies, Moved& moved) {
 void refresh_boxes(const StepContext& context, const ColliderTable& colliders, BodyTable& bodies,
                    BroadPhase& broad_phase, QueryTrees& query, Moved& moved) {
     const Settings& settings = context.settings;
-    limit_speeds(settings, bodies, moved);
+    limit_speeds(settings, bodies, moved, context.report);
     moved.sweep.assign(bodies.traits.size(), 0);  // bodies that rest do not keep the sweep of an earlier step
     moved.previous_boxes.resize(broad_phase.boxes.size());
     parallel_ranges(context.tasks, bodies.awake.size(), 128, [&](std::size_t begin, std::size_t end) {

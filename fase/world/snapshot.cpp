@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 #include <new>
-#include <optional>
 
 #include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/text.hpp"
@@ -159,6 +158,9 @@ template <class A> void describe(A& a, dynamics::ContactManifold& m) {
         m.tangent, m.offset_a, m.offset_b, m.separation, m.x, m.y, m.feature, m.impulse, m.total_impulse,
         m.friction_impulse, m.twist_impulse);
 }
+template <class A> void describe(A& a, EventCollider& c) {
+    all(a, c.index, c.generation, c.owner, c.body.index, c.body.generation, c.body.owner, c.user, c.body_user);
+}
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
 }
@@ -240,6 +242,7 @@ template <class A> void describe(A& a, WorldState& s) {
         s.contacts.all, s.contacts.free, s.broad_phase.edited_colliders, s.bodies.to_wake, s.bodies.let_go,
         s.contacts.to_check, s.broad_phase.removed_any, s.broad_phase.query_all_awake);
     describe_manifolds(a, s);
+    if constexpr (A::saves) describe(a, s.contacts.removed);  // read by events alone
     std::vector<broad::Pair> excluded(s.bodies.exclusions.pairs().begin(), s.bodies.exclusions.pairs().end());
     describe(a, excluded);
     if constexpr (A::reads) {
@@ -294,22 +297,6 @@ std::vector<std::byte> World::snapshot() const {
 
 namespace {
 
-/// Gives contacts the new generations of their colliders.
-template <class Renewed> void renew_contacts(WorldState& state, const std::vector<Renewed>& renewed) {
-    if (renewed.empty()) return;
-    std::vector<const Renewed*> of(state.colliders.all.size(), nullptr);
-    for (const Renewed& slot : renewed) of[slot.index] = &slot;
-    for (const pairs::PairList* list : {&state.contacts.active, &state.contacts.resting})
-        for (const std::uint32_t index : list->values) {
-            Contact& c = state.contacts[index];
-            const auto renew = [&](std::uint32_t collider, std::uint16_t& generation) {
-                if (of[collider] != nullptr && of[collider]->before == generation) generation = of[collider]->now;
-            };
-            renew(c.collider_a, c.generation_a);
-            renew(c.collider_b, c.generation_b);
-        }
-}
-
 /// Checks the head of a snapshot and returns the bytes of its state.
 Result<std::span<const std::byte>> payload_of(std::span<const std::byte> snapshot) {
     ReadArchive head{snapshot};
@@ -357,21 +344,18 @@ void complete(WorldState& next) {
         if (next.colliders.shapes[i].users != 0) next.colliders.shape_of_key.emplace(next.colliders.shapes[i].key, i);
 }
 
-/// Gives the pool of a snapshot the number of the restoring world. Returns the slots whose id got a new generation;
-/// nullopt when a slot has none left.
-template <class Renewed, class Tag>
-std::optional<std::vector<Renewed>> take_over(IdPool<Tag>& next, const IdPool<Tag>& before) {
-    IdPool<Tag> pool(before.owner());
-    const std::vector<typename IdPool<Tag>::Slot> old = next.slots();
-    if (!pool.restore(next.slots(), next.free_list(), next.newest()) ||
-        !pool.continue_after(before, next.owner() != before.owner()))
-        return std::nullopt;
-    std::vector<Renewed> renewed;
-    for (std::uint32_t i = 0; i < old.size(); ++i)
-        if (old[i].generation != pool.slots()[i].generation)
-            renewed.push_back({i, old[i].generation, pool.slots()[i].generation});
-    next = std::move(pool);
-    return renewed;
+/// Has the restored state issue no id that this world issued before under the same number, and remembers those that it
+/// issued under other numbers.
+void continue_ids(WorldState& next, const WorldState& before) {
+    next.issued = before.issued;
+    const std::uint16_t number = next.bodies.ids.owner();
+    next.issued.push_back({before.bodies.ids.owner(), before.bodies.ids.newest(), before.colliders.ids.newest()});
+    for (const IssuedIds& issued : next.issued) {
+        if (issued.number != number) continue;
+        next.bodies.ids.continue_after(issued.bodies);
+        next.colliders.ids.continue_after(issued.colliders);
+    }
+    std::erase_if(next.issued, [&](const IssuedIds& issued) { return issued.number == number; });
 }
 
 }  // namespace
@@ -389,16 +373,8 @@ Result<IdMap> World::restore(std::span<const std::byte> snapshot) {
         if (!rebuild_colours(next->bodies, next->contacts))
             return not_a_snapshot(head_size + archive.at, "contradictory colours", "a consistent state");
         IdMap map;
-        map.from_ = next->bodies.ids.owner();
-        map.to_ = state_->bodies.ids.owner();
-        auto bodies = take_over<IdMap::Renewed>(next->bodies.ids, state_->bodies.ids);
-        auto colliders = take_over<IdMap::Renewed>(next->colliders.ids, state_->colliders.ids);
-        if (!bodies || !colliders)
-            return Error{Status::Capacity, "World::restore", "found a slot that has issued 65,535 ids; expected fewer",
-                         "restore into a new world"};
-        map.bodies_ = std::move(*bodies);
-        map.colliders_ = std::move(*colliders);
-        renew_contacts(*next, map.colliders_);
+        map.owner_ = next->bodies.ids.owner();
+        continue_ids(*next, *state_);
         next->broad_phase.structure = state_->broad_phase.structure;
         next->solver.reference = state_->solver.reference;
         complete(*next);

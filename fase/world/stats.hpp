@@ -21,6 +21,8 @@ struct StepReport {
     std::uint32_t bodies = 0;  ///< all
     std::uint32_t awake = 0;   ///< dynamic and kinematic bodies that were stepped
     std::uint32_t asleep = 0;
+    /// Awake dynamic bodies without a mass, which nothing moves: they lack a collider with a density, or BodyDef::mass.
+    std::uint32_t without_mass = 0;
     std::uint32_t boxes_moved = 0;       ///< colliders that left their fat box
     std::uint64_t candidates = 0;        ///< pairs that the broad phase reported for them
     std::uint32_t pairs = 0;             ///< active pairs of fat boxes; resting pairs are not counted

@@ -41,6 +41,11 @@ void complete_report(const WorldState& state, StepReport& report) {
     report.bytes = bytes_held(state);
 }
 
+/// Lists the bodies that a step moved.
+void list_moved(const BodyTable& bodies, std::vector<BodyId>& moved) {
+    for (const std::uint32_t body : bodies.awake) moved.push_back(*bodies.ids.id_at(body));
+}
+
 void advance(WorldClock& clock, const Settings& settings, float seconds) {
     ++clock.steps;
     clock.time += static_cast<double>(seconds);
@@ -65,6 +70,7 @@ void step(WorldState& state, float seconds) {
 
     report = {};
     state.events.clear();
+    state.moved_bodies.clear();
     begin_step(query);
     timed(report, Stage::Refresh, [&] {
         apply_edits(bodies, colliders, broad_phase);
@@ -84,6 +90,7 @@ void step(WorldState& state, float seconds) {
             solve(context, bodies, moved, contacts, constraints, state.solver);
         });
         timed(report, Stage::Finish, [&] { finish(context, state.solver, constraints, motion_states); });
+        list_moved(bodies, state.moved_bodies);
     }
     timed(report, Stage::Events, [&] {
         collide_sensors(context, bodies, colliders, moved, constraints, contacts);

@@ -198,6 +198,7 @@ void track_pairs(const StepContext& context, const MotionStates& state, Moved& m
         update_pairs(context, state);
     }
     clear_changes(broad_phase, moved);
+    state.contacts.removed.clear();
 }
 
 }  // namespace fase

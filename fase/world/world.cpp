@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <new>
+#include <random>
 
 #include "fase/core/detail/text.hpp"
 #include "fase/world/detail/collider_places.hpp"
@@ -11,9 +12,10 @@
 namespace fase {
 namespace {
 
-/// Returns a number for a new world, so that a world rejects the ids of another. Wraps after 65,535.
+/// Returns a number for a new world, so that a world rejects the ids of another: 1 to 65,535. The first of a process is
+/// random, so that ids in saved games of another process are rejected, too; they wrap after 65,535 worlds.
 std::uint16_t next_world_number() {
-    static std::atomic<std::uint32_t> count{0};
+    static std::atomic<std::uint32_t> count{std::random_device{}()};
     return static_cast<std::uint16_t>(count.fetch_add(1, std::memory_order_relaxed) % 0xffff + 1);
 }
 
@@ -204,6 +206,16 @@ void World::read_bodies(std::vector<BodyState>& out) const {
     append(out, body_count(), [&] {
         for (std::uint32_t i = 0; i < state_->bodies.ids.size(); ++i)
             if (const auto id = state_->bodies.ids.id_at(i)) out.push_back(state_of(*state_, *id));
+    });
+}
+
+void World::read_moved_bodies(std::vector<BodyState>& out) const {
+    if (state_->broken) return;
+    // Those that fell asleep in the step moved in it, too; those that were added or woken since did not.
+    const std::vector<BodyId>& moved = state_->moved_bodies;
+    append(out, moved.size(), [&] {
+        for (const BodyId body : moved)
+            if (contains(body)) out.push_back(state_of(*state_, body));
     });
 }
 

@@ -48,12 +48,12 @@ public:
 
     // Adding and removing.
     /// Adds a body without colliders: it falls when its mass is given, but touches nothing.
-    Result<BodyId> add_body(const BodyDef& def);
-    /// Adds a body with one collider.
-    Result<BodyId> add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider = {});
+    Result<NewBody> add_body(const BodyDef& def);
+    /// Adds a body with one collider. Returns both ids: `const auto [body, collider] = *world.add_body(def, shape);`.
+    Result<NewBody> add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider = {});
     /// Adds a body with many colliders, in their order, or nothing when one of them is refused. O(colliders), where
     /// adding them one by one recomputes the mass each time.
-    Result<BodyId> add_body(const BodyDef& def, std::span<const ColliderShape> colliders);
+    Result<NewBody> add_body(const BodyDef& def, std::span<const ColliderShape> colliders);
     /// Adds a collider to a body and wakes the body. Recomputes its mass unless the mass was given.
     Result<ColliderId> add_collider(BodyId body, const Shape& shape, const ColliderDef& def = {});
     /// Removes a body and its colliders; bodies that touched it wake.
@@ -69,6 +69,9 @@ public:
     [[nodiscard]] std::vector<BodyId> bodies() const;
     /// Appends the states of all bodies, in the order of their indices. Use it to read many bodies.
     void read_bodies(std::vector<BodyState>& out) const;
+    /// Appends the states of the bodies that the last step moved, in the order of their indices: dynamic and kinematic
+    /// ones that were awake. Bodies that were removed since are left out.
+    void read_moved_bodies(std::vector<BodyState>& out) const;
     /// Returns the colliders of a body, in the order they were added; empty when the id is invalid.
     [[nodiscard]] std::vector<ColliderId> colliders_of(BodyId body) const;
     /// Appends every contact that has points, of awake and sleeping bodies, in order.
@@ -128,11 +131,11 @@ public:
     /// Empty when memory runs out, or when the world is broken by step().
     [[nodiscard]] std::vector<std::byte> snapshot() const;
     /// Replaces all bodies and settings with those of the snapshot, which may come from any source: every number and
-    /// list is checked. Ids that were valid when the world took the snapshot are valid again; those that it issued
-    /// later are refused from now on, and issued for no other body. Ids of another world that took the snapshot are
-    /// translated by the map that is returned. A world takes a snapshot as its own when it has the same number: the
-    /// worlds of a process are counted from 1. Format when the bytes are not a snapshot of this version; Capacity when
-    /// a slot has issued 65,535 ids; nothing changes then.
+    /// list is checked. Ids that were valid when the snapshot was taken are valid again, whichever world of whichever
+    /// process took it: a saved game may store ids beside the snapshot. All other ids are refused from now on: those
+    /// that this world issued after it took the snapshot, and those of this world when another one took it; none of
+    /// them is issued again for another body. Two worlds that restored the same snapshot accept each other's ids.
+    /// Clears events(). Format when the bytes are not a snapshot of this version; nothing changes then.
     Result<IdMap> restore(std::span<const std::byte> snapshot);
 
 private:

@@ -206,13 +206,14 @@ TEST(Snapshot, a_replay_after_restore_gives_the_same_hash) {
     EXPECT_EQ(play(), first);
 }
 
-TEST(Snapshot, another_world_hands_out_a_map_of_ids) {
+TEST(Snapshot, ids_are_good_again_in_any_world) {
     World first = make_mixed(60, true), second = make_mixed(60, true);
     for (const BodyId body : second.bodies()) ASSERT_TRUE(second.remove_body(body));
     std::vector<BodyId> own;
     for (int i = 0; i < 20; ++i) own.push_back(add(second, {.position = {0, 2.0 * i, 0}}, Sphere{}));
     std::vector<ColliderId> own_colliders;
     for (const BodyId body : own) own_colliders.push_back(second.colliders_of(body)[0]);
+    const std::vector<std::byte> own_snapshot = second.snapshot();
     const auto map = second.restore(first.snapshot());
     ASSERT_TRUE(map);
     EXPECT_EQ(second.hash(), first.hash());
@@ -222,22 +223,45 @@ TEST(Snapshot, another_world_hands_out_a_map_of_ids) {
     }
     for (const ColliderId id : own_colliders) EXPECT_FALSE(second.contains(id));
     for (const BodyId id : first.bodies()) {
-        EXPECT_FALSE(second.contains(id));
-        ASSERT_TRUE(second.contains(map->of(id)));
-        EXPECT_EQ(state(second, map->of(id)).pose.position, state(first, id).pose.position);
-        for (const ColliderId collider : first.colliders_of(id)) ASSERT_TRUE(second.contains(map->of(collider)));
+        ASSERT_TRUE(second.contains(id));
+        EXPECT_EQ(map->of(id), id);
+        EXPECT_EQ(state(second, id).pose.position, state(first, id).pose.position);
+        for (const ColliderId collider : first.colliders_of(id)) ASSERT_TRUE(second.contains(collider));
     }
     for (int i = 0; i < 60; ++i) {
         ASSERT_TRUE(first.step());
         ASSERT_TRUE(second.step());
         ASSERT_EQ(second.hash(), first.hash());
-        ASSERT_EQ(second.events().contacts_begun.size(), first.events().contacts_begun.size());
+        ASSERT_EQ(second.events().contacts_begun, first.events().contacts_begun);
     }
-    // A world's own snapshot keeps its ids.
-    const BodyId mine = second.bodies()[0];
-    const auto same = second.restore(second.snapshot());
-    ASSERT_TRUE(same);
-    EXPECT_EQ(same->of(mine), mine);
+    // Back to its own: its ids are good again, and none that it issued meanwhile is issued twice.
+    const BodyId meanwhile = add(second, {}, Sphere{});
+    ASSERT_TRUE(second.restore(own_snapshot));
+    for (const BodyId id : own) EXPECT_TRUE(second.contains(id));
+    EXPECT_FALSE(second.contains(meanwhile));
+}
+
+TEST(Snapshot, ids_of_an_abandoned_future_are_refused_after_a_visit_to_another_world) {
+    World world = make_world(), other = make_world();
+    add(world, {}, Sphere{});
+    const std::vector<std::byte> saved = world.snapshot();
+    const BodyId later = add(world, {}, Sphere{});
+    ASSERT_TRUE(world.restore(other.snapshot()));
+    EXPECT_FALSE(world.contains(later));
+    ASSERT_TRUE(world.restore(saved));
+    EXPECT_FALSE(world.contains(later));
+    const BodyId again = add(world, {}, Sphere{});
+    EXPECT_EQ(again.index, later.index);
+    EXPECT_FALSE(world.contains(later)) << "names the body that has its slot now";
+}
+
+TEST(Snapshot, worlds_have_numbers_of_their_own) {
+    std::set<std::uint16_t> numbers;
+    for (int i = 0; i < 100; ++i) {
+        World world = make_world();
+        numbers.insert(add(world, {}, Sphere{}).owner);
+    }
+    EXPECT_EQ(numbers.size(), 100u);
 }
 
 /// Edits between steps, too: lists that a restored world builds in another order must not show.

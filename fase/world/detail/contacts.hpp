@@ -52,10 +52,17 @@ template <class F> void for_each_touched(const BodyContacts& of, std::uint32_t b
 /// Frees a contact and reports the end of the touch. Removes it from the resting list, but not from the active one.
 void end_contact(BodyTable& bodies, const ColliderTable& colliders, ContactTable& contacts, Events& events,
                  std::uint32_t contact);
+/// Returns what events tell of a collider that exists.
+[[nodiscard]] EventCollider event_collider(const BodyTable& bodies, const ColliderTable& colliders,
+                                           std::uint32_t collider);
+/// Returns what events tell of the two colliders of a contact; either may have been removed since the last step.
+[[nodiscard]] std::array<EventCollider, 2> event_colliders(const BodyTable& bodies, const ColliderTable& colliders,
+                                                           const ContactTable& contacts,
+                                                           const dynamics::Contact& contact);
 /// Sets whether two colliders touch, and reports the change. Bodies whose contact ends begin their rest
 /// anew.
-void set_touching(BodyTable& bodies, const ColliderTable& colliders, Events& events, dynamics::Contact& contact,
-                  bool touching);
+void set_touching(BodyTable& bodies, const ColliderTable& colliders, const ContactTable& contacts, Events& events,
+                  dynamics::Contact& contact, bool touching);
 void add_resting(ContactTable& contacts, std::uint32_t contact);
 void remove_resting(ContactTable& contacts, std::uint32_t contact);
 /// Sorts contacts by their pairs and removes duplicates.

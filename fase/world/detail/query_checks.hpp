@@ -38,7 +38,9 @@ Result<void> check_frustum(const Frustum& frustum, const std::string& where);
 [[nodiscard]] bool passes_filter(const WorldState& state, const QueryFilter& filter, std::uint32_t collider);
 
 [[nodiscard]] inline Found found(const WorldState& state, std::uint32_t collider) {
-    return {*state.bodies.ids.id_at(state.colliders[collider].body), *state.colliders.ids.id_at(collider)};
+    const Collider& c = state.colliders[collider];
+    return {*state.bodies.ids.id_at(c.body), *state.colliders.ids.id_at(collider), c.user,
+            state.bodies.traits[c.body].user};
 }
 [[nodiscard]] inline const Shape& shape_of(const WorldState& state, std::uint32_t collider) {
     return state.colliders.shapes[state.colliders[collider].shape].shape;

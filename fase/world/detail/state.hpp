@@ -13,6 +13,12 @@
 
 namespace fase {
 
+/// The newest generation of each slot that a world issued under a number that it no longer has.
+struct IssuedIds {
+    std::uint16_t number = 0;
+    std::vector<std::uint16_t> bodies, colliders;
+};
+
 /// All of a world. Edits, snapshots and queries take it whole; a stage of the step takes the tables that it reads and
 /// writes (world/detail/stages.hpp).
 struct WorldState {
@@ -28,6 +34,8 @@ struct WorldState {
     Events events;
     StepReport report;
 
+    std::vector<BodyId> moved_bodies;  ///< that the last step moved, by index
+
     // Remade.
     Moved moved;
     Constraints constraints;
@@ -37,6 +45,7 @@ struct WorldState {
     mutable QueryTrees query;  // mutable: the first query after a change updates it
     std::unique_ptr<TaskRunner> own_tasks;
     TaskRunner* tasks = nullptr;
+    std::vector<IssuedIds> issued;  ///< before a snapshot of another world was restored; a number occurs once
     bool stepping = false;
     bool broken = false;  ///< a step ran out of memory half-way: only restore() leads on
 };

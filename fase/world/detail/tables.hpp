@@ -18,6 +18,7 @@
 #include "fase/world/body.hpp"
 #include "fase/world/detail/contact_graph.hpp"
 #include "fase/world/detail/sleepers.hpp"
+#include "fase/world/events.hpp"
 
 namespace fase {
 
@@ -117,6 +118,7 @@ struct ContactTable {
     /// Resting contacts that the next step collides once: new ones, those of edited colliders, and those of sensors
     /// whose visitor fell asleep.
     std::vector<std::uint32_t> to_check;
+    std::vector<EventCollider> removed;  ///< colliders removed since the last step, for the ends of their contacts
 
     // Remade.
     ContactGraph graph;
