@@ -179,7 +179,7 @@ QueryScene stirred_pile(const QueryCounts& counts) {
 Result<QueryScene> level_from(const std::string& obj_file, const QueryCounts& counts) {
     const Result<std::vector<std::byte>> bytes = read_file(obj_file, max_bytes);
     if (!bytes) return bytes.error();
-    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Other)
+    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Obj && kind != FileKind::Other)
         return wrong_kind(obj_file, kind, "a mesh as OBJ text");
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     QueryScene scene;

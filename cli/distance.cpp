@@ -13,8 +13,8 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
-#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/core/detail/text.hpp"
 #include "fase/narrow/distance.hpp"
@@ -175,10 +175,11 @@ Result<Verdict> check_case(const JsonValue& object) {
 }
 
 Result<std::vector<Verdict>> check_file(const std::string& file) {
+    static constexpr FileKind kinds[]{FileKind::Json};
+    if (auto checked = check_input(file, {"distance", "pairs of shapes (.json)", kinds}); !checked)
+        return checked.error();
     const auto bytes = read_file(file, max_bytes);
     if (!bytes) return bytes.error();
-    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Json && kind != FileKind::Other)
-        return wrong_kind(file, kind, "pairs of shapes as JSON");
     const auto document = scene::parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     if (!document) return document.error();
     const std::optional<JsonValue> cases = document->root().find("cases");

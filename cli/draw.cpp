@@ -10,6 +10,7 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/structure_choice.hpp"
 #include "fase/broad/any_structure.hpp"
@@ -49,8 +50,9 @@ Result<View> plane_named(const std::string& name) {
 
 Result<std::vector<Job>> jobs_of(const DrawOptions& options) {
     std::error_code ignored;
-    const bool into_folder = std::filesystem::is_directory(options.output, ignored);
-    const bool all = options.structure == "all";
+    const bool all = options.structure == "all", is_file_name = has_extension(options.output, output::drawing);
+    const bool into_folder = std::filesystem::is_directory(options.output, ignored) || options.output.ends_with('/') ||
+                             (all && !is_file_name);
     std::vector<std::string> names;
     if (all) {
         broad::for_each_structure([&]<broad::Structure S>() { names.emplace_back(S::info.name); });
@@ -65,8 +67,7 @@ Result<std::vector<Job>> jobs_of(const DrawOptions& options) {
         names.push_back(name);
     }
     if (all && !into_folder)
-        return Error{
-            Status::BadArgument, options.output, "found no folder; expected an existing one for all structures", {}};
+        return Error{Status::BadArgument, options.output, "found a file; expected a folder for all structures", {}};
     std::vector<Job> jobs;
     for (const std::string& name : names) {
         const std::string file =
@@ -130,6 +131,7 @@ std::string picture_of(const Replay& replay, std::span<const std::uint8_t> flags
 }
 
 Result<void> write_text(const std::string& file, const std::string& text) {
+    if (auto made = make_folder_of(file); !made) return made;
     auto out = record::OutputFile::create(file);
     if (!out) return out.error();
     if (auto written = out->append(std::as_bytes(std::span(text))); !written) return written;
@@ -141,6 +143,8 @@ Result<void> draw(const DrawOptions& options) {
     if (!view) return view.error();
     const Result<std::vector<Job>> jobs = jobs_of(options);
     if (!jobs) return jobs.error();
+    if (auto checked = check_input(options.trace, {"draw", input::traces, input::trace_kinds}); !checked)
+        return checked.error();
     auto trace = record::TraceReader::open(options.trace);
     if (!trace) return trace.error();
     if (options.frame >= trace->frames())
@@ -179,7 +183,8 @@ void add_draw(Command& program, CommandRegistry& registry) {
     command.add_whole_number("--frame",
                              "Which frame, from 0 (default); the structure is updated through all frames before it", 0,
                              0xffffffff, options.frame);
-    command.add_text("-o,--output", "The .svg file to write, or a folder for NAME.svg", options.output).required();
+    command.add_text("-o,--output", "The .svg file to write, or a folder (FOLDER/) for NAME.svg", options.output)
+        .required();
     command.set_footer(
         "\nExamples:\n"
         "  fase draw boxes.aabt --structure kd_tree -o kd_tree.svg\n"

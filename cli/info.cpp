@@ -11,14 +11,16 @@
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/facts.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
-#include "fase/core/detail/file_kind.hpp"
+#include "fase/atlas/png.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/level/map.hpp"
 #include "fase/level/wad.hpp"
 #include "fase/record/player.hpp"
 #include "fase/record/trace.hpp"
 #include "fase/scene/gltf.hpp"
+#include "fase/scene/obj.hpp"
 
 namespace fase::cli {
 namespace {
@@ -180,19 +182,52 @@ Result<Facts> wad_facts(const InfoOptions& options) {
     return facts;
 }
 
-Result<Facts> facts_of(const InfoOptions& options) {
-    const Result<FileStart> start = read_start(options.file, file_kind_bytes);
-    if (!start) {
-        const bool unfinished = read_start(options.file + ".part", 1).has_value();
-        return unfinished ? recording_facts(options) : Result<Facts>(start.error());
+Result<Facts> mesh_facts(const InfoOptions& options) {
+    const Result<TriangleMesh> mesh = scene::read_obj(options.file);
+    if (!mesh) return mesh.error();
+    Aabb bounds;
+    for (const std::uint32_t corner : mesh->indices)
+        bounds = merge(bounds, {mesh->positions[corner], mesh->positions[corner]});
+    Facts facts;
+    facts.add("kind", "OBJ mesh");
+    facts.add("vertices", mesh->positions.size());
+    facts.add("triangles", mesh->indices.size() / 3);
+    if (!is_empty(bounds)) {
+        facts.add("room_least", std::string_view(text_of(bounds.lo)));
+        facts.add("room_largest", std::string_view(text_of(bounds.hi)));
     }
-    switch (const FileKind kind = kind_of(start->bytes)) {
+    facts.add("warnings", std::vector<std::string>{});
+    return facts;
+}
+
+Result<Facts> image_facts(const InfoOptions& options) {
+    const Result<atlas::Image> image = atlas::read_png_file(options.file);
+    if (!image) return image.error();
+    Facts facts;
+    facts.add("kind", "PNG image");
+    facts.add("width", image->size.width);
+    facts.add("height", image->size.height);
+    facts.add("warnings", std::vector<std::string>{});
+    return facts;
+}
+
+Result<Facts> facts_of(const InfoOptions& options) {
+    static constexpr FileKind kinds[]{FileKind::Recording, FileKind::Trace, FileKind::Wad, FileKind::Glb,
+                                      FileKind::Gltf,      FileKind::Obj,   FileKind::Png};
+    const Result<FileKind> kind = check_input(
+        options.file,
+        {"info", "scenes (.gltf, .glb), recordings, traces, levels (.wad), .obj meshes and .png images", kinds});
+    if (!kind) {
+        const bool unfinished = kind.status() == Status::Io && read_start(options.file + ".part", 1).has_value();
+        return unfinished ? recording_facts(options) : Result<Facts>(kind.error());
+    }
+    switch (*kind) {
         case FileKind::Recording: return recording_facts(options);
         case FileKind::Trace: return trace_facts(options);
         case FileKind::Wad: return wad_facts(options);
-        case FileKind::Glb:
-        case FileKind::Json: return scene_facts(options);
-        default: return wrong_kind(options.file, kind, "a scene (.gltf, .glb), a recording, a trace or a WAD");
+        case FileKind::Obj: return mesh_facts(options);
+        case FileKind::Png: return image_facts(options);
+        default: return scene_facts(options);
     }
 }
 
@@ -209,7 +244,7 @@ int run_info(const InfoOptions& options) {
 void add_info(Command& program, CommandRegistry& registry) {
     auto& info = registry.options<InfoOptions>();
     Command command = program.add_command("info", "Print the kind and the contents of a file");
-    command.add_text("FILE", "A scene, a recording, a trace or a WAD", info.file).required();
+    command.add_text("FILE", "A scene, a recording, a trace, a WAD, an OBJ mesh or a PNG image", info.file).required();
     add_json(command, info.json);
     command.set_footer(
         "\nExamples:\n  fase info scene.glb\n  fase info castle.faserec --json\n  fase info rain.aabt\n  fase info "

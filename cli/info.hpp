@@ -8,7 +8,7 @@ class Command;
 class CommandRegistry;
 
 struct InfoOptions {
-    std::string file;   ///< a glTF scene, a recording, a trace or a WAD: its first bytes decide
+    std::string file;   ///< any kind that Fase reads; the content decides
     bool json = false;  ///< one JSON value on stdout instead of lines
 };
 

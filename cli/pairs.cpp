@@ -9,6 +9,7 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
@@ -98,6 +99,8 @@ int run_pairs(const PairsOptions& options) {
     const bool is_bounded = options.structure == "all";
     if (options.limit && !is_bounded)
         return refuse({Status::BadArgument, "--limit", "found a single structure; expected --structure all", {}});
+    if (auto checked = check_input(options.trace, {"pairs", input::traces, input::trace_kinds}); !checked)
+        return refuse(checked.error());
     Result<record::TraceReader> trace = record::TraceReader::open(options.trace);
     if (!trace) return refuse(trace.error());
 

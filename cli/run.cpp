@@ -141,6 +141,7 @@ Result<Run> prepare(const RunOptions& options) {
         SceneLook look = look_of(*scene, *ids);
         if (look.head.title.empty()) look.head.title = printable(options.scene);
         run.summary.warnings.insert(run.summary.warnings.end(), look.warnings.begin(), look.warnings.end());
+        if (auto made_folder = make_folder_of(options.record); !made_folder) return made_folder.error();
         Result<record::Recorder> recorder = record::Recorder::create(
             options.record, run.world, look.head, {.durable = options.durable, .contacts = options.record_contacts});
         if (!recorder) return recorder.error();
@@ -148,6 +149,7 @@ Result<Run> prepare(const RunOptions& options) {
         run.summary.recording = options.record;
     }
     if (!options.trace.empty()) {
+        if (auto made_folder = make_folder_of(options.trace); !made_folder) return made_folder.error();
         Result<record::WorldTrace> trace = record::WorldTrace::create(options.trace, run.world);
         if (!trace) return trace.error();
         run.trace = *std::move(trace);

@@ -11,6 +11,7 @@
 #include "bench/table_file.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
@@ -86,7 +87,9 @@ Result<void> save(const std::string& file, const std::vector<PairBenchRow>& rows
     static const std::vector<std::string> columns{
         "date",      "commit", "machine", "trace",   "engine",   "settings", "boxes", "static", "asleep", "frames",
         "median_ms", "low_ms", "high_ms", "mean_ms", "worst_ms", "build_ms", "pairs", "hash",   "bytes"};
-    return lines.empty() ? Result<void>{} : bench::append_to_table(file, columns, lines);
+    if (lines.empty()) return {};
+    if (auto made = make_folder_of(file); !made) return made;
+    return bench::append_to_table(file, columns, lines);
 }
 
 }  // namespace
@@ -95,6 +98,9 @@ int run_bench_pairs(const BenchPairsOptions& options) {
     if (!options.csv.empty()) {
         if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
+    for (const std::string& trace : options.traces)
+        if (auto checked = check_input(trace, {"bench pairs", input::traces, input::trace_kinds}); !checked)
+            return refuse(checked.error());
     const Interrupts interrupts;
     std::vector<PairBenchRow> rows;
     // One trace at a time, so that finished rows are saved even if a later trace fails.

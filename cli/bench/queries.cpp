@@ -10,6 +10,7 @@
 #include "bench/table_file.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
@@ -61,6 +62,7 @@ Result<void> save(const std::string& file, const std::vector<bench::QueryRow>& r
     static const std::vector<std::string> columns{"date", "commit", "machine",  "scene",  "contender",  "settings",
                                                   "kind", "things", "rounds",   "asked",  "per_second", "low",
                                                   "high", "hits",   "compared", "differ", "build_ms",   "bytes"};
+    if (auto made = make_folder_of(file); !made) return made;
     return bench::append_to_table(file, columns, lines);
 }
 
@@ -76,6 +78,10 @@ int run_bench_queries(const BenchQueriesOptions& options) {
         return refuse({Status::BadArgument, "--mesh", "found another --scene with it; expected level", {}});
     if (options.counts.items > 0 && options.scene == "level")
         return refuse({Status::BadArgument, "--count", "found --scene level with it; expected static or pile", {}});
+    static constexpr FileKind mesh_kinds[]{FileKind::Obj};
+    for (const std::string& mesh : options.meshes)
+        if (auto checked = check_input(mesh, {"bench queries --mesh", "OBJ meshes", mesh_kinds}); !checked)
+            return refuse(checked.error());
     if (!options.csv.empty()) {
         if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }

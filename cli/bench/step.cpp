@@ -111,6 +111,7 @@ Result<void> save(const std::string& file, const std::vector<bench::StepRow>& ro
         "date",         "commit", "machine",  "scene",     "engine",     "settings",    "threads",
         "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "min_ms",      "mean_ms_low",
         "mean_ms_high", "bodies", "contacts", "hash",      "top_height", "mean_height", "drift"};
+    if (auto made = make_folder_of(file); !made) return made;
     return bench::append_to_table(file, columns, lines);
 }
 

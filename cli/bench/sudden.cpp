@@ -66,7 +66,9 @@ Result<void> save(const std::string& file, const std::vector<SuddenRow>& rows) {
     static const std::vector<std::string> columns{"date",        "commit",   "machine",   "event",   "structure",
                                                   "boxes",       "frames",   "median_ms", "mean_ms", "worst_ms",
                                                   "worst_frame", "build_ms", "pairs"};
-    return lines.empty() ? Result<void>{} : bench::append_to_table(file, columns, lines);
+    if (lines.empty()) return {};
+    if (auto made = make_folder_of(file); !made) return made;
+    return bench::append_to_table(file, columns, lines);
 }
 
 }  // namespace

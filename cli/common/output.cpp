@@ -12,6 +12,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "fase/core/detail/files.hpp"
 
 namespace fase::cli {
 namespace {
@@ -37,6 +41,25 @@ std::size_t printable_length(std::string_view text) {
 
 Error cannot_write(const std::string& path, std::string problem) { return {Status::Io, path, std::move(problem), {}}; }
 
+/// Checks that a file can be created in the folder of `path`, or in the nearest folder above it that exists: those
+/// between are created before the file is written.
+Result<void> check_folder(const std::string& path) {
+    std::string folder = folder_of(path);
+    struct stat info {};
+    while (::stat(folder.c_str(), &info) != 0) {
+        if (errno != ENOENT)
+            return cannot_write(path, "cannot use the folder \"" + folder + "\": " + std::strerror(errno));
+        struct stat link {};
+        if (::lstat(folder.c_str(), &link) == 0)
+            return cannot_write(path, "found a link \"" + folder + "\" that leads nowhere; expected a folder");
+        folder = folder_of(folder);
+    }
+    if (!S_ISDIR(info.st_mode)) return cannot_write(path, "found the file \"" + folder + "\"; expected a folder");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        return cannot_write(path, "found the read-only folder \"" + folder + "\"; expected a writable one");
+    return {};
+}
+
 /// Checks that a regular file can be created or replaced. `info`: of the existing file, or nullptr.
 Result<void> check_writable(const std::string& path, const struct stat* info, const std::string& input) {
     if (info != nullptr) {
@@ -52,17 +75,8 @@ Result<void> check_writable(const std::string& path, const struct stat* info, co
     } else if (errno == ENAMETOOLONG || errno == ELOOP) {
         return cannot_write(printable(path, 60), std::string("cannot write: ") + std::strerror(errno));
     }
-    const std::size_t slash = path.rfind('/');
-    const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    struct stat folder_info {};
-    if (::stat(folder.c_str(), &folder_info) != 0 || !S_ISDIR(folder_info.st_mode)) {
-        return cannot_write(path, "found no folder \"" + folder + "\"; expected an existing one");
-    }
     if (path.back() == '/') return cannot_write(path, "found a folder's name; expected a file's");
-    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-        return cannot_write(path, "found the read-only folder \"" + folder + "\"; expected a writable one");
-    }
-    return {};
+    return check_folder(path);
 }
 
 Result<void> check_extension(const std::string& path, std::initializer_list<OutputKind> kinds) {
@@ -122,9 +136,13 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
     return out;
 }
 
-int refuse(const Error& error) {
-    const std::string line = fmt::format("fase: error: {}\n", printable(error.text()));
+void print_line(std::string_view sort, std::string_view text) {
+    const std::string line = fmt::format("fase: {}: {}\n", sort, printable(text));
     std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+int refuse(const Error& error) {
+    print_line("error", error.text());
     return exit_code(error.status);
 }
 
@@ -163,6 +181,13 @@ Result<void> check_output(const std::string& path, std::initializer_list<OutputK
     if (Result<void> writable = check_writable(path, exists ? &info : nullptr, input); !writable) return writable;
     const bool is_device = exists && !S_ISREG(info.st_mode);
     return is_device ? Result<void>{} : check_extension(path, kinds);
+}
+
+Result<void> make_folder_of(const std::string& path) {
+    std::error_code why;
+    std::filesystem::create_directories(folder_of(path), why);
+    if (why) return cannot_write(path, "cannot create its folder: " + why.message());
+    return {};
 }
 
 }  // namespace fase::cli

@@ -23,6 +23,9 @@ inline constexpr int exit_bug = 70;   ///< an internal error
 /// than `max_bytes` is cut and ends with an ellipsis.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
+/// Prints `fase: SORT: TEXT` as one line on stderr; `sort`: "error" or "warning".
+void print_line(std::string_view sort, std::string_view text);
+
 /// Prints `fase: error: WHERE: PROBLEM; REMEDY` as one line on stderr and returns the exit code.
 int refuse(const Error& error);
 
@@ -53,9 +56,12 @@ inline constexpr OutputKind recording{"a recording", ".faserec"}, trace{"a trace
 
 /// Checks, without writing, that a file of one of the kinds can be written at `path`. All output options use it, before
 /// any other work. Io when it is a folder, read-only, the same file as `input` (empty: no input file), or when its
-/// folder is missing or read-only. BadArgument for an empty path, and for another extension; devices and pipes may have
-/// any name.
+/// folder is read-only or cannot be created. BadArgument for an empty path, and for another extension; devices and
+/// pipes may have any name.
 Result<void> check_output(const std::string& path, std::initializer_list<OutputKind> kinds,
                           const std::string& input = {});
+
+/// Creates the folder of `path`, and those above it, if they are missing. Call it right before the file is written.
+Result<void> make_folder_of(const std::string& path);
 
 }  // namespace fase::cli

@@ -12,6 +12,7 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
 #include "cli/level/mesh.hpp"
 #include "cli/level/report.hpp"
@@ -74,8 +75,8 @@ Result<ParsedOptions> parse_options(const LevelCommand& command) {
     if (!command.point.empty()) {
         const std::size_t comma = command.point.find(',');
         const auto x = number_in(std::string_view(command.point).substr(0, comma));
-        const auto y =
-            comma == std::string::npos ? std::nullopt : number_in(std::string_view(command.point).substr(comma + 1));
+        const auto y = number_in(comma == std::string::npos ? std::string_view()
+                                                            : std::string_view(command.point).substr(comma + 1));
         constexpr double limit = 65536;
         if (!x || !y || !(*x >= -limit && *x <= limit && *y >= -limit && *y <= limit))
             return bad_option("--point", command.point, "X,Y, two numbers from -65536 to 65536");
@@ -148,8 +149,7 @@ void compile(const LevelCommand& command, const ParsedOptions& options, const Wa
     }
     job.map = std::move(*map);
     for (const std::string& what : job.map->left_out)
-        std::fprintf(stderr, "fase: warning: %s: %s: left out %s\n", printable(command.file).c_str(),
-                     printable(job.map->name).c_str(), what.c_str());
+        print_line("warning", fmt::format("{}: {}: left out {}", command.file, job.map->name, what));
     const auto start = std::chrono::steady_clock::now();
     Result<LevelBsp> bsp = options.read ? level::read_bsp(command.file, wad, job.marker, *job.map, *options.read)
                                         : level::compile(*job.map, options.compile);
@@ -196,6 +196,7 @@ Result<void> draw(const LevelCommand& command, const ParsedOptions& options, con
     const level::Drawing drawing = level::draw_plan(*job.map, *job.bsp, look);
     if (!command.svg.empty()) {
         const std::string svg = level::svg_of(drawing);
+        if (auto made = make_folder_of(command.svg); !made) return made;
         if (auto written = write_file(command.svg, std::as_bytes(std::span(svg))); !written) return written;
     }
     if (command.png.empty()) return {};
@@ -204,6 +205,7 @@ Result<void> draw(const LevelCommand& command, const ParsedOptions& options, con
     image.size = {pixels.width, pixels.height};
     image.pixels = std::move(pixels.rgba);
     const auto png = atlas::write_png(image);
+    if (auto made = make_folder_of(command.png); !made) return made;
     return png ? write_file(command.png, *png) : png.error();
 }
 
@@ -215,6 +217,7 @@ Result<void> write_wad(const LevelCommand& command, const ParsedOptions& options
         if (!written) return written;
     }
     const auto bytes = wad.to_bytes();
+    if (auto made = make_folder_of(command.output); !made) return made;
     return bytes ? write_file(command.output, *bytes) : bytes.error();
 }
 
@@ -226,6 +229,10 @@ Result<int> compile_maps(const LevelCommand& command) {
     for (const auto& [file, kind] : outputs)
         if (!file->empty())
             if (auto checked = check_output(*file, {kind}, command.file); !checked) return checked.error();
+    static constexpr FileKind kinds[]{FileKind::Wad};
+    if (auto checked = check_input(command.file, {"level", "levels (.wad) and meshes (.obj, .gltf, .glb)", kinds});
+        !checked)
+        return checked.error();
     Result<Wad> wad = Wad::read(command.file);
     if (!wad) return wad.error();
     const Result<std::vector<std::size_t>> markers = markers_of(command, *wad);
@@ -261,8 +268,10 @@ Result<int> compile_maps(const LevelCommand& command) {
     return hidden || (command.check && !all_good(rows)) ? exit_check_failed : exit_ok;
 }
 
+bool is_mesh(FileKind kind) { return kind == FileKind::Obj || kind == FileKind::Glb || kind == FileKind::Gltf; }
+
 /// The command for a mesh; refuses options that only maps have.
-int run_mesh(const LevelCommand& command) {
+int run_mesh(const LevelCommand& command, FileKind kind) {
     const std::pair<const char*, bool> wad_only[] = {{"MAP", !command.map.empty()},
                                                      {"--all", command.all},
                                                      {"--output", !command.output.empty()},
@@ -279,14 +288,16 @@ int run_mesh(const LevelCommand& command) {
                                                      {"--check", command.check}};
     for (const auto& [option, given] : wad_only)
         if (given) return refuse({Status::BadArgument, option, "found a mesh; expected a WAD", {}});
-    return run_level_mesh({command.file, command.point, command.rays, command.threads, command.json});
+    return run_level_mesh(
+        {command.file, kind == FileKind::Obj, command.point, command.rays, command.threads, command.json});
 }
 
 }  // namespace
 
 int run_level(const LevelCommand& command) {
     try {
-        if (is_mesh_name(command.file)) return run_mesh(command);
+        // A file of another kind is refused with the options of maps, which are checked first.
+        if (const auto kind = kind_of_file(command.file); kind && is_mesh(*kind)) return run_mesh(command, *kind);
         const Result<int> code = compile_maps(command);
         return code ? *code : refuse(code.error());
     } catch (const std::bad_alloc&) {

@@ -22,13 +22,6 @@
 namespace fase::cli {
 namespace {
 
-bool ends_with(const std::string& text, std::string_view ending) {
-    if (text.size() < ending.size()) return false;
-    return std::equal(
-        ending.begin(), ending.end(), text.end() - static_cast<std::ptrdiff_t>(ending.size()),
-        [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b); });
-}
-
 /// All visible triangles of a glTF scene, in world coordinates.
 TriangleMesh mesh_of(const scene::Scene& scene) {
     TriangleMesh all;
@@ -51,9 +44,9 @@ TriangleMesh mesh_of(const scene::Scene& scene) {
     return all;
 }
 
-Result<TriangleMesh> read_mesh(const std::string& file) {
-    if (ends_with(file, ".obj")) return scene::read_obj(file);
-    const Result<scene::Scene> scene = scene::read_gltf(file);
+Result<TriangleMesh> read_mesh(const LevelMeshCommand& command) {
+    if (command.is_obj) return scene::read_obj(command.file);
+    const Result<scene::Scene> scene = scene::read_gltf(command.file);
     if (!scene) return scene.error();
     return mesh_of(*scene);
 }
@@ -135,7 +128,7 @@ std::string text_of(const level::PolygonBspStats& s, double ms) {
 Result<int> build_tree(const LevelMeshCommand& command) {
     const Result<std::optional<Vec3d>> point = point_of(command.point);
     if (!point) return point.error();
-    Result<TriangleMesh> mesh = read_mesh(command.file);
+    Result<TriangleMesh> mesh = read_mesh(command);
     if (!mesh) return mesh.error();
     const auto tasks = make_thread_runner(command.threads);
     const auto start = std::chrono::steady_clock::now();
@@ -177,10 +170,6 @@ Result<int> build_tree(const LevelMeshCommand& command) {
 }
 
 }  // namespace
-
-bool is_mesh_name(const std::string& file) {
-    return ends_with(file, ".obj") || ends_with(file, ".gltf") || ends_with(file, ".glb");
-}
 
 int run_level_mesh(const LevelMeshCommand& command) {
     const Result<int> code = build_tree(command);

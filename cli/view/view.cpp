@@ -13,6 +13,7 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
 #include "cli/view/page.hpp"
 #include "cli/view/server.hpp"
@@ -24,13 +25,23 @@
 namespace fase::cli {
 namespace {
 
-void warn(const std::string& text) { fmt::print(stderr, "fase: warning: {}\n", printable(text)); }
+void warn(const std::string& text) { print_line("warning", text); }
 
 /// Checks that the output files can be written and differ from the input.
 Result<void> check_outputs(const ViewOptions& options, const std::string& input) {
     if (!options.html.empty())
         if (Result<void> checked = check_output(options.html, {output::page}, input); !checked) return checked;
     return options.glb.empty() ? Result<void>{} : check_output(options.glb, {output::animation}, input);
+}
+
+/// Refuses files of other kinds. The player judges beginnings of recordings, and missing files, which may have a
+/// NAME.part.
+Result<void> check_recording(const std::string& file) {
+    static constexpr FileKind kinds[]{FileKind::Recording, FileKind::Other, FileKind::Empty};
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return {};
+    const auto checked = check_input(file, {"view", "recordings (.faserec)", kinds});
+    return checked ? Result<void>{} : checked.error();
 }
 
 /// The valid bytes of a recording.
@@ -47,12 +58,14 @@ Result<void> write_page(const record::Player& player, const std::string& name) {
     if (!recording) return recording.error();
     const Result<std::string> page = self_contained_page(*recording);
     if (!page) return page.error();
+    if (Result<void> made = make_folder_of(name); !made) return made;
     return write_file(name, std::as_bytes(std::span(*page)));
 }
 
 Result<void> write_glb(record::Player& player, const std::string& name) {
     const Result<std::vector<std::byte>> glb = record::export_glb(player);
     if (!glb) return glb.error();
+    if (Result<void> made = make_folder_of(name); !made) return made;
     return write_file(name, *glb);
 }
 
@@ -86,6 +99,7 @@ int serve(const record::Player& player, const ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
     if (Result<void> checked = check_outputs(options, options.file); !checked) return refuse(checked.error());
+    if (Result<void> checked = check_recording(options.file); !checked) return refuse(checked.error());
     Result<record::Player> player = record::Player::open(options.file);
     if (!player) return refuse(player.error());
     if (Result<void> has_frames = (*player).check_has_frames(); !has_frames) return refuse(has_frames.error());

@@ -23,8 +23,9 @@ Result<Scene> read_gltf(const std::string& path) {
 
 Result<Scene> read_gltf(const std::vector<std::byte>& bytes, const std::string& folder, const std::string& name) {
     const FileKind kind = kind_of(bytes);
-    const bool may_be_gltf = kind == FileKind::Glb || kind == FileKind::Json || kind == FileKind::Other;
-    if (!may_be_gltf) return wrong_kind(name, kind, "a glTF scene (.gltf or .glb)");
+    const bool is_json = kind == FileKind::Gltf || kind == FileKind::Json;
+    if (kind != FileKind::Glb && !is_json && kind != FileKind::Other)
+        return wrong_kind(name, kind, "a glTF scene (.gltf or .glb)");
     try {
         gltf::Document document(bytes, folder);
         return gltf::assemble(document);

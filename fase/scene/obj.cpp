@@ -120,7 +120,8 @@ void add_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& face) {
 
 Result<TriangleMesh> parse_obj(const std::string& name, std::span<const std::byte> bytes) {
     const FileKind kind = kind_of(bytes);
-    if (kind != FileKind::Other && kind != FileKind::Empty) return wrong_kind(name, kind, "a mesh as OBJ text");
+    if (kind != FileKind::Obj && kind != FileKind::Other && kind != FileKind::Empty)
+        return wrong_kind(name, kind, "a mesh as OBJ text");
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     TriangleMesh mesh;
     Words words(text);

@@ -133,8 +133,9 @@ TEST(CommandLine, OutputsWithAnotherExtensionAreRefusedBeforeAnyWork) {
         {{"level", "no.wad", "--png", "a.svg"}, "found the extension \".svg\"; expected .png for an image"},
         {{"level", "no.wad", "-o", "a.lmp"}, "found the extension \".lmp\"; expected .wad for a WAD"},
         {{"draw", "no.aabt", "-o", "a.png"}, "found the extension \".png\"; expected .svg for a drawing"},
-        {{"generate", "rain", "-o", "x.glb"}, "x.glb: found the extension \".glb\"; expected .aabt for a trace"},
-        {{"generate", "castle", "-o", "x.aabt"}, "found the extension \".aabt\"; expected .glb or .gltf for a scene"},
+        {{"generate", "rain", "-o", "x.glb"}, "x.glb: found a scene's extension; rain is a trace, which needs .aabt"},
+        {{"generate", "castle", "-o", "x.aabt"},
+         "found a trace's extension; castle is a scene, which needs .glb or .gltf"},
         {{"atlas", "no.png", "-o", "x.png"}, "--output: found \"x.png\"; expected the NAME of NAME.png and NAME.json"},
     };
     for (const auto& [arguments, words] : cases) {

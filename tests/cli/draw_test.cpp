@@ -119,14 +119,25 @@ TEST(Draw, RefusesInvalidOptions) {
     expect_refused({trace, "--frame", "-1", "-o", file}, 2, "--frame");
     expect_refused({trace, "-o", folder / "x.png"}, 2,
                    "x.png: found the extension \".png\"; expected .svg for a drawing");
-    expect_refused({trace, "--structure", "all", "-o", file}, 2, "found no folder");
-    expect_refused({trace, "-o", folder / "none/x.svg"}, 3, "found no folder");
+    expect_refused({trace, "--structure", "all", "-o", file}, 2, "found a file; expected a folder");
+    expect_refused({trace, "-o", trace + "/x.svg"}, 3, "expected a folder");
     expect_refused({folder / "none.aabt", "-o", file}, 3, "none.aabt");
     expect_refused({trace}, 2, "--output");
     write_file(folder / "text.aabt", "something else");
     expect_refused({folder / "text.aabt", "-o", file}, 2, "text.aabt");
     std::filesystem::copy_file(trace, folder / "self.svg");
     expect_error_line(run_fase({"draw", folder / "self.svg", "-o", folder / "self.svg"}), 3, "found the input file");
+}
+
+TEST(Draw, CreatesTheFolderOfThePicture) {
+    const TemporaryFolder folder;
+    const std::string trace = write_small_trace(folder);
+    EXPECT_EQ(run_fase({"draw", trace, "-o", folder / "a/b/x.svg"}).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "a/b/x.svg"));
+    EXPECT_EQ(run_fase({"draw", trace, "--structure", "quadtree", "-o", folder / "c/"}).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "c/quadtree.svg"));
+    EXPECT_EQ(run_fase({"draw", trace, "--structure", "all", "-o", folder / "all"}).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "all/octree.svg"));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(Generate, EqualSeedsGiveEqualBytes) {
 TEST(Generate, RefusesUnknownKindsCountsAndExtensions) {
     const TemporaryFolder folder;
     expect_error_line(run_fase({"generate", "palace", "-o", folder / "p.glb"}), 2,
-                      "KIND: found \"palace\"; expected one of castle");
+                      "KIND: found \"palace\"; expected a scene (castle");
     expect_error_line(run_fase({"generate", "pile", "-o", folder / "p.obj"}), 2,
                       "p.obj: found the extension \".obj\"; expected .glb or .gltf for a scene");
     expect_error_line(run_fase({"generate", "pile", "--count", "1000001", "-o", folder / "p.glb"}), 2, "--count");
@@ -57,7 +57,8 @@ TEST(Info, DistinguishesScenesAndRecordings) {
     EXPECT_EQ(text_at(recording_json->root(), "kind"), "Fase recording");
     EXPECT_EQ(number_at(recording_json->root(), "frames"), 10);
     write_file(folder / "other", "something else");
-    expect_error_line(run_fase({"info", folder / "other"}), 2, "other: found another kind of file; expected a scene");
+    expect_error_line(run_fase({"info", folder / "other"}), 2,
+                      "other: found another kind of file; `fase info` reads scenes");
     expect_error_line(run_fase({"info", folder / "none"}), 3, "none");
 }
 
@@ -92,10 +93,11 @@ TEST(FileKinds, EachCommandNamesTheKindOfAFileThatItCannotRead) {
     struct Sample {
         std::string file, name;
     };
-    const std::vector<Sample> samples{
-        {"x.wad", "a WAD file"},   {"x.png", "a PNG image"},    {"x.rec", "a recording"},   {"x.aabt", "a trace"},
-        {"x.snap", "a snapshot"},  {"x.zst", "a zstd archive"}, {"x.gz", "a gzip archive"}, {"x.none", "an empty file"},
-        {"x.glb", "a glTF scene"}, {"x.json", "a JSON file"}};
+    const std::vector<Sample> samples{{"x.wad", "a WAD file"},    {"x.png", "a PNG image"},
+                                      {"x.rec", "a recording"},   {"x.aabt", "a trace"},
+                                      {"x.snap", "a snapshot"},   {"x.zst", "a zstd archive"},
+                                      {"x.gz", "a gzip archive"}, {"x.none", "an empty file"},
+                                      {"x.glb", "a glTF scene"},  {"x.json", "a JSON file"}};
     const std::string rest(200, '\0');
     write_file(folder / "x.wad", "IWAD" + rest);
     write_file(folder / "x.png", "\x89PNG\r\n\x1a\n" + rest);
@@ -108,30 +110,32 @@ TEST(FileKinds, EachCommandNamesTheKindOfAFileThatItCannotRead) {
     write_file(folder / "x.glb", "glTF" + rest);
     write_file(folder / "x.json", "{}");
     const auto expect = [&](const std::vector<std::string>& command, const std::string& readable,
-                            const std::string& expected) {
+                            const std::string& reads) {
         for (const Sample& sample : samples) {
             if (readable.find(sample.file) != std::string::npos) continue;
             std::vector<std::string> arguments = command;
             arguments.insert(arguments.begin() + 1, folder / sample.file);
-            expect_error_line(run_fase(arguments), 2,
-                              sample.file + ": found " + sample.name + (sample.file == "x.snap" ? " of a world" : "") +
-                                  "; expected " + expected);
+            expect_error_line(
+                run_fase(arguments), 2,
+                sample.file + ": found " + sample.name + (sample.file == "x.snap" ? " of a world" : "") + reads);
         }
     };
-    expect({"info"}, "x.wad x.rec x.aabt x.glb x.json", "a scene (.gltf, .glb), a recording, a trace or a WAD");
-    expect({"run"}, "x.wad x.glb x.json", "a .gltf, .glb or .wad file");
-    expect({"query"}, "x.wad x.glb x.json x.aabt", "a .gltf, .glb, .wad or .aabt file");
-    expect({"level"}, "x.wad x.glb", "a WAD file");
-    expect({"view"}, "x.rec", "a recording");
-    expect({"pairs"}, "x.aabt", "a trace");
-    expect({"draw", "-o", folder / "x.svg"}, "x.aabt", "a trace");
-    expect({"distance"}, "x.json", "pairs of shapes as JSON");
-    expect({"atlas", "-o", folder / "sheet"}, "x.png", "a PNG image");
+    expect({"info"}, "x.wad x.rec x.aabt x.glb x.png", "; `fase info` reads scenes (.gltf, .glb), recordings, traces");
+    expect({"run"}, "x.wad x.glb", "; `fase run` reads scenes");
+    expect({"query"}, "x.wad x.glb x.aabt", "; `fase query` reads scenes");
+    expect({"level"}, "x.wad x.glb", "; `fase level` reads levels (.wad) and meshes");
+    expect({"view"}, "x.rec x.none", "; `fase view` reads recordings (.faserec)");
+    expect({"pairs"}, "x.aabt", "; `fase pairs` reads traces (.aabt)");
+    expect({"draw", "-o", folder / "x.svg"}, "x.aabt", "; `fase draw` reads traces (.aabt)");
+    expect({"distance"}, "x.json", "; `fase distance` reads pairs of shapes (.json)");
+    expect({"atlas", "-o", folder / "sheet"}, "x.png", "; `fase atlas` reads PNG images");
     for (const Sample& sample : samples) {
         if (sample.file == "x.none" || sample.file == "x.json") continue;
         std::filesystem::copy_file(folder / sample.file, folder / (sample.file + ".obj"));
-        expect_error_line(run_fase({"level", folder / (sample.file + ".obj")}), 2, "expected a mesh as OBJ text");
-        expect_error_line(run_fase({"atlas", "--rects", folder / sample.file}), 2, "expected a text with a width");
+        if (sample.file != "x.wad" && sample.file != "x.glb")
+            expect_error_line(run_fase({"level", folder / (sample.file + ".obj")}), 2, "`fase level` reads levels");
+        expect_error_line(run_fase({"atlas", "--rects", folder / sample.file}), 2,
+                          "`fase atlas --rects` reads a text with a width");
     }
 }
 

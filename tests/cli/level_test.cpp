@@ -122,7 +122,7 @@ TEST(LevelCommand, RefusesInOneLineAndWritesNothing) {
     refused({one, "--lumps", "nodes"}, 2, "no such lump; expected one");
     refused({two, "--all", "--svg", folder / "a.svg"}, 2, "expected a single MAP");
     refused({one, "-o", one}, 3, "one.wad");
-    refused({one, "-o", folder / "no/such.wad"}, 3, "such.wad");
+    refused({one, "-o", one + "/such.wad"}, 3, "such.wad");
     refused({one, "MAP01", "--svg", folder / "x.svg", "-o", one}, 3, "one.wad");
     EXPECT_FALSE(fs::exists(folder / "x.svg"));
 

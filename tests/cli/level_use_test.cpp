@@ -90,7 +90,7 @@ TEST(LevelCommand, RefusesOptionsThatDoNotApply) {
     expect_error_line(run_fase({"level", folder / "none.obj"}), 3, "none.obj");
     std::ofstream(folder / "bad.obj") << "v 0 0 0\nf 1 2 3\n";
     expect_error_line(run_fase({"level", folder / "bad.obj"}), 2, "bad.obj:2: found corner 2; expected one of the 1");
-    std::ofstream(folder / "empty.obj") << "# nothing\n";
+    std::ofstream(folder / "empty.obj") << "# no face\nv 0 0 0\n";
     expect_error_line(run_fase({"level", folder / "empty.obj"}), 2, "found 0 triangles without area");
     EXPECT_FALSE(fs::exists(folder / "x.svg"));
 }

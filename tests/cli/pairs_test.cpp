@@ -151,7 +151,7 @@ TEST_F(Pairs, RefusesFilesThatAreNotTraces) {
     write_file(trace, good.substr(0, 100));
     expect_error_line(run_fase({"pairs", trace}), 2, ": byte 100: frame 0, body 3: found the end of the file");
     write_file(trace, "{}");
-    expect_error_line(run_fase({"pairs", trace}), 2, ": found a JSON file; expected a trace");
+    expect_error_line(run_fase({"pairs", trace}), 2, ": found a JSON file; `fase pairs` reads traces (.aabt)");
     expect_error_line(run_fase({"info", folder / "t.aabt"}), 2, "t.aabt");
 }
 

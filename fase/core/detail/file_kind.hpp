@@ -17,17 +17,23 @@ enum class FileKind : std::uint8_t {
     Trace,      ///< boxes frame by frame (AABT)
     Snapshot,   ///< of World::snapshot()
     Glb,        ///< binary glTF
-    Json,       ///< begins like JSON; glTF in text form is JSON, too
+    Gltf,       ///< glTF in text form
+    Json,       ///< other JSON
     Wad,        ///< IWAD or PWAD
+    Obj,        ///< a Wavefront mesh
+    Mjcf,       ///< a model of MuJoCo, XML
     Png,
+    Jpeg,
     Zstd,
     Gzip,
 };
 
-/// Number of first bytes that kind_of() needs to know every kind.
-inline constexpr std::size_t file_kind_bytes = 64;
+/// Number of first bytes that kind_of() looks at.
+inline constexpr std::size_t file_kind_bytes = 4096;
 
-/// The kind of a file that begins with `start`: all of its bytes, or at least file_kind_bytes of them.
+/// The kind of a file that begins with `start`: all of its bytes, or at least file_kind_bytes of them. Text has no
+/// magic bytes: an OBJ file is known by the keyword of its first line that is no comment, glTF by its first key, or an
+/// "asset" near its start. An OBJ file that begins with more comments than that is FileKind::Other.
 [[nodiscard]] FileKind kind_of(std::span<const std::byte> start);
 /// The kind of the file at `path`. Errors of read_start().
 Result<FileKind> kind_of_file(const std::string& path);
