@@ -36,20 +36,31 @@ template <class Kinds> bool has_kind(const Kinds& kinds, const std::string& name
     return std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return kind.name == name; });
 }
 
+template <class Kinds> std::string names_of(const Kinds& kinds) {
+    std::string names;
+    for (const auto& kind : kinds) names += fmt::format("{}{}", names.empty() ? "" : ", ", kind.name);
+    return names;
+}
+
 /// Checks the kind, and that the output fits it. Some kinds are both scenes and traces.
 Result<void> check(const GenerateOptions& options) {
     const bool is_scene = has_kind(scene::generators(), options.kind),
                is_trace = has_kind(record::trace_kinds(), options.kind);
-    if (!is_scene && !is_trace) {
-        std::string kinds;
-        for (const auto& kind : scene::generators()) kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", kind.name);
-        for (const auto& kind : record::trace_kinds())
-            if (!has_kind(scene::generators(), std::string(kind.name))) kinds += fmt::format(", {}", kind.name);
+    if (!is_scene && !is_trace)
         return Error{Status::BadArgument,
                      "KIND",
-                     fmt::format("found \"{}\"; expected one of {}", printable(options.kind, 60), kinds),
+                     fmt::format("found \"{}\"; expected a scene ({}) or a trace ({})", printable(options.kind, 60),
+                                 names_of(scene::generators()), names_of(record::trace_kinds())),
                      {}};
-    }
+    if (!is_scene && has_extension(options.output, output::scene))
+        return Error{Status::BadArgument,
+                     options.output,
+                     fmt::format("found a scene's extension; {} is a trace, which needs .aabt", options.kind),
+                     {}};
+    if (!is_trace && has_extension(options.output, output::trace))
+        return Error{Status::BadArgument, options.output,
+                     fmt::format("found a trace's extension; {} is a scene, which needs .glb or .gltf", options.kind),
+                     fmt::format("'fase run {} --trace FILE.aabt' simulates it and writes a trace", options.kind)};
     if (is_scene && is_trace) return check_output(options.output, {output::scene, output::trace});
     return is_scene ? check_output(options.output, {output::scene}) : check_output(options.output, {output::trace});
 }
@@ -59,6 +70,7 @@ int write_scene(const GenerateOptions& options) {
         return refuse({Status::BadArgument, "--frames", "found a scene; expected a trace (.aabt)", {}});
     const Result<scene::Scene> made = scene::generate(options.kind, {options.count, options.seed});
     if (!made) return refuse(with_option_names(made.error()));
+    if (auto folder = make_folder_of(options.output); !folder) return refuse(folder.error());
     if (const Result<void> written = scene::write_gltf(*made, options.output); !written) return refuse(written.error());
     fmt::print("{}: {}, {} bodies, {} of them dynamic\n", printable(options.output), options.kind, made->bodies.size(),
                scene::dynamic_bodies(*made));
@@ -66,6 +78,7 @@ int write_scene(const GenerateOptions& options) {
 }
 
 int write_trace(const GenerateOptions& options) {
+    if (auto folder = make_folder_of(options.output); !folder) return refuse(folder.error());
     const Result<record::GeneratedTrace> made =
         record::generate_trace(options.kind, {options.count, options.frames, options.seed}, options.output);
     if (!made) return refuse(with_option_names(made.error()));
@@ -91,13 +104,15 @@ int run_generate(const GenerateOptions& options) {
 void add_generate(Command& program, CommandRegistry& registry) {
     auto& generate = registry.options<GenerateOptions>();
     Command command = program.add_command("generate", "Generate a scene, or a trace of boxes");
-    command.add_text("KIND", "What to generate, see below", generate.kind).required();
+    command.add_text("KIND", "What to generate: a scene or a trace, listed below", generate.kind).required();
     add_count(command, "Approximate number of bodies; boxes of a trace", generate.count);
     command.add_whole_number("--frames", "Of a trace (default: depends on the kind)", 1, 1'000'000, generate.frames);
     add_seed(command, "Seed of the random numbers (default 1)", generate.seed);
     command.add_text("-o,--output", "The file to write: .glb or .gltf for a scene, .aabt for a trace", generate.output)
         .required();
-    command.set_footer("\nScenes:\n" + lines_of(scene::generators(), "bodies") + "\nTraces:\n" +
+    command.set_footer("\nScenes (.glb, .gltf), bodies with shapes, for 'fase run':\n" +
+                       lines_of(scene::generators(), "bodies") +
+                       "\nTraces (.aabt), boxes frame by frame, for 'fase pairs', 'query' and 'draw':\n" +
                        lines_of(record::trace_kinds(), "boxes") +
                        "\nExamples:\n"
                        "  fase generate castle -o castle.glb\n"
