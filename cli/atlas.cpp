@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// The figures of a packing that are printed.
 struct Figures {
-    std::size_t count = 0, different = 0;
+    std::size_t count = 0, different = 0, skipped = 0;
     std::vector<atlas::Size> pages;
     double occupancy = 0, ms = 0;
     std::string rule;
@@ -37,14 +37,15 @@ void print(const Figures& figures, bool json) {
     if (json) {
         fmt::print(
             "{{\"count\": {}, \"pages\": {}, \"width\": {}, \"height\": {}, \"occupancy\": {:.6f}, \"ms\": {:.3f}, "
-            "\"different\": {}, \"rule\": {}}}\n",
+            "\"different\": {}, \"rule\": {}, \"skipped\": {}}}\n",
             figures.count, figures.pages.size(), largest.width, largest.height, figures.occupancy, figures.ms,
-            figures.different, scene::quoted(figures.rule));
+            figures.different, scene::quoted(figures.rule), figures.skipped);
         return;
     }
     const std::string shared =
         figures.different == figures.count ? "" : fmt::format(" ({} different)", figures.different);
-    fmt::print("{}{} on {} page{}{} x {}: {:.2f} % filled, {:.2f} ms, {}\n", figures.count, shared,
+    const std::string left_out = figures.skipped == 0 ? "" : fmt::format(", {} left out", figures.skipped);
+    fmt::print("{}{}{} on {} page{}{} x {}: {:.2f} % filled, {:.2f} ms, {}\n", figures.count, shared, left_out,
                figures.pages.size(), figures.pages.size() == 1 ? " of " : "s of up to ", largest.width, largest.height,
                100 * figures.occupancy, figures.ms, figures.rule);
 }
@@ -82,7 +83,26 @@ Result<Figures> pack_rectangles(const AtlasCommand& command, const atlas::PackOp
         error.where = command.rects + ": " + error.where;
         return error;
     }
-    return Figures{sizes->size(), sizes->size(), packing->pages, packing->occupancy(*sizes), ms, packing->rule};
+    return Figures{sizes->size(), sizes->size(), 0, packing->pages, packing->occupancy(*sizes), ms, packing->rule};
+}
+
+/// Prints a line for each image that cannot be read: as warnings if they are left out, else as errors. Returns the
+/// error that ends the command, if one does.
+Result<void> report_bad(const std::vector<Error>& bad, std::size_t files, bool skip) {
+    if (bad.empty()) return {};
+    const bool none_is_left = bad.size() == files;
+    if (bad.size() == 1 && !skip) {
+        Error error = bad[0];
+        error.remedy += fmt::format("{}--skip-bad leaves it out", error.remedy.empty() ? "" : ", or ");
+        return error;
+    }
+    for (const Error& error : bad) print_line(skip ? "warning" : "error", error.text());
+    const std::string count = fmt::format("{} of {} images cannot be read", bad.size(), files);
+    if (!skip) return Error{bad[0].status, "FILES", "found that " + count, "--skip-bad leaves them out"};
+    if (none_is_left)
+        return Error{bad[0].status, "FILES", "found that " + count + "; expected at least one good one", {}};
+    print_line("warning", count + " and are left out");
+    return {};
 }
 
 Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions& pack_options) {
@@ -97,10 +117,12 @@ Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions
     }
     const Result<std::vector<SpriteFile>> files = find_sprites(command.inputs);
     if (!files) return files.error();
-    const Result<std::vector<atlas::Sprite>> sprites = read_sprites(*files);
-    if (!sprites) return sprites.error();
+    const Result<SpriteImages> images = read_sprites(*files);
+    if (!images) return images.error();
+    if (auto usable = report_bad(images->bad, files->size(), command.skip_bad); !usable) return usable.error();
+    const std::vector<atlas::Sprite>& sprites = images->sprites;
     const atlas::AtlasOptions options{pack_options, command.trim, command.array};
-    const Result<atlas::Atlas> made = atlas::make_atlas(*sprites, options);
+    const Result<atlas::Atlas> made = atlas::make_atlas(sprites, options);
     if (!made) return made.error();
     const Result<std::vector<atlas::NamedBytes>> outputs = atlas::files_of(*made, command.output, options);
     if (!outputs) return outputs.error();
@@ -114,8 +136,10 @@ Result<Figures> make_pages(const AtlasCommand& command, const atlas::PackOptions
             return Error{Status::Io, file.name, "found an input file; expected another file to write",
                          "write the pages outside the folder of the sprites"};
     }
+    if (auto folder = make_folder_of(command.output); !folder) return folder.error();
     if (auto written = atlas::write_files(*outputs); !written) return written.error();
-    Figures figures{sprites->size(), made->different, {}, made->occupancy, made->pack_ms, made->rule};
+    Figures figures{sprites.size(),  made->different, images->bad.size(), {},
+                    made->occupancy, made->pack_ms,   made->rule};
     for (const atlas::Image& page : made->pages) figures.pages.push_back(page.size);
     return figures;
 }
@@ -124,9 +148,11 @@ Result<Figures> pack(const AtlasCommand& command) {
     const bool measure_only = !command.rects.empty();
     if (measure_only && (!command.inputs.empty() || !command.output.empty()))
         return Error{Status::BadArgument, "--rects", "found FILES or --output with it; expected --rects alone", {}};
-    if (measure_only && (command.trim || command.array))
+    if (measure_only && (command.trim || command.array || command.skip_bad))
         return Error{Status::BadArgument,
-                     command.trim ? "--trim" : "--array",
+                     command.trim    ? "--trim"
+                     : command.array ? "--array"
+                                     : "--skip-bad",
                      "found --rects with it; expected images (FILES)",
                      {}};
     if (!measure_only && command.inputs.empty())
@@ -169,6 +195,7 @@ void add_atlas(Command& program, CommandRegistry& registry) {
     command.add_flag("--no-rotate", "Do not rotate sprites", options.no_rotate);
     command.add_flag("--power-of-two", "Pages whose sides are powers of two", options.power_of_two);
     command.add_flag("--array", "Frames as a JSON array instead of an object by name", options.array);
+    command.add_flag("--skip-bad", "Leave out images that cannot be read, with a warning for each", options.skip_bad);
     command.add_text("--method", "best (default), kd_tree or skyline", options.method);
     const Option budget = command.add_positive_number("--budget-ms", "Time for packing (default 50)", 1e7,
                                                       [&options](double value) { options.budget_ms = value; });
@@ -182,7 +209,8 @@ void add_atlas(Command& program, CommandRegistry& registry) {
         "  fase atlas sprites -o game --trim --padding 2\n"
         "  fase atlas hero.png tree.png -o game --power-of-two --tries 100\n"
         "  fase atlas --rects sizes.txt --budget-ms 3 --json\n"
-        "\nA sprite from a folder is named by its path in that folder, a single file by its file name. Identical\n"
+        "\nAll images that cannot be read are listed; nothing is written then, or with --skip-bad the others are.\n"
+        "A sprite from a folder is named by its path in that folder, a single file by its file name. Identical\n"
         "sprites share one place. Occupancy is the share of the pages' pixels that sprites cover. The time is the\n"
         "time of packing.");
     registry.on(command, [&options] { return run_atlas(options); });

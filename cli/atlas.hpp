@@ -19,11 +19,13 @@ struct AtlasCommand {
     std::string method;     ///< best (default), kd_tree or skyline
     double budget_ms = 50;  ///< time for packing
     int tries = 0;          ///< attempts to pack a page; 0: as many as budget_ms allows
+    bool skip_bad = false;  ///< leave images out that cannot be read
     bool json = false;      ///< one JSON object on stdout instead of a line
 };
 
 /// Writes the pages and prints their figures. Returns the exit code: 0; 2 an image, a name or an option is invalid; 3 a
 /// file cannot be read or written; 4 the images do not fit into pages. Writes either all files or none.
+/// Prints a line for each image that cannot be read.
 int run_atlas(const AtlasCommand& options);
 
 /// Adds the command to the program.

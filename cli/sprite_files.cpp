@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "cli/common/input.hpp"
 #include "fase/atlas/png.hpp"
-#include "fase/core/detail/file_kind.hpp"
 #include "fase/core/detail/files.hpp"
 #include "fase/core/detail/text.hpp"
 
@@ -59,6 +59,12 @@ Result<void> find_in_folder(const std::string& folder, std::vector<SpriteFile>& 
     return {};
 }
 
+Result<atlas::Image> read_image(const std::string& path) {
+    static constexpr FileKind kinds[]{FileKind::Png};
+    if (auto checked = check_input(path, {"atlas", "PNG images", kinds}); !checked) return checked.error();
+    return atlas::read_png_file(path);
+}
+
 /// Removes leading blanks and an integer from a line; false if there is none.
 bool take_number(std::string_view& line, int& number) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -97,28 +103,34 @@ Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs
     return found;
 }
 
-Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> files) {
-    std::vector<atlas::Sprite> sprites;
+Result<SpriteImages> read_sprites(std::span<const SpriteFile> files) {
+    SpriteImages images;
     std::int64_t pixels = 0;
     for (const SpriteFile& file : files) {
-        Result<atlas::Image> image = atlas::read_png_file(file.path);
-        if (!image) return image.error();
+        Result<atlas::Image> image = read_image(file.path);
+        if (!image && image.status() == Status::NoMemory) return image.error();
+        if (!image) {
+            images.bad.push_back(image.error());
+            continue;
+        }
         pixels += area_of(image->size);
         if (pixels > max_total_pixels)
             return Error{
                 Status::Capacity, file.path,
                 fmt::format("found {} pixels in the images up to here; expected at most {}", pixels, max_total_pixels),
                 "create several atlases"};
-        sprites.push_back({file.name, *std::move(image)});
+        images.sprites.push_back({file.name, *std::move(image)});
     }
-    return sprites;
+    return images;
 }
 
 Result<std::vector<atlas::Size>> read_rectangles(const std::string& path) {
+    static constexpr FileKind kinds[]{FileKind::Other, FileKind::Empty};
+    if (auto checked = check_input(path, {"atlas --rects", "a text with a width and a height per line", kinds});
+        !checked)
+        return checked.error();
     const Result<std::vector<std::byte>> bytes = read_file(path, max_text);
     if (!bytes) return bytes.error();
-    if (const FileKind kind = kind_of(*bytes); kind != FileKind::Other && kind != FileKind::Empty)
-        return wrong_kind(path, kind, "a text with a width and a height per line");
     std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     std::vector<atlas::Size> sizes;
     for (std::size_t number = 1; !text.empty(); ++number) {

@@ -19,8 +19,14 @@ struct SpriteFile {
 /// one name; a link that leads out of its folder; no files.
 [[nodiscard]] Result<std::vector<SpriteFile>> find_sprites(std::span<const std::string> inputs);
 
-/// Reads the files: at most 2^28 pixels in total.
-[[nodiscard]] Result<std::vector<atlas::Sprite>> read_sprites(std::span<const SpriteFile> files);
+/// Images that were read, and why others were not.
+struct SpriteImages {
+    std::vector<atlas::Sprite> sprites;
+    std::vector<Error> bad;  ///< one for each file that is no valid PNG image or cannot be opened
+};
+
+/// Reads the files. Errors: Capacity for more than 2^28 pixels in total; NoMemory.
+[[nodiscard]] Result<SpriteImages> read_sprites(std::span<const SpriteFile> files);
 
 /// Reads rectangles from a text file: width and height per line; skips empty lines. `where` of an error is FILE:LINE.
 [[nodiscard]] Result<std::vector<atlas::Size>> read_rectangles(const std::string& path);

@@ -119,12 +119,49 @@ TEST(AtlasCommand, WritesNothingWhenItRefuses) {
     fs::create_directory(out + "/sheet.json");
     expect_error_line(run_fase({"atlas", sprites, "-o", name}), 3, "sheet.json");
     fs::remove(out + "/sheet.json");
-    expect_error_line(run_fase({"atlas", sprites, "-o", folder / "nowhere/sheet"}), 3, "nowhere");
+    expect_error_line(run_fase({"atlas", sprites, "-o", sprites + "/a.png/sheet"}), 3, "expected a folder");
     expect_error_line(run_fase({"atlas", sprites + "/a.png", sprites + "/none.png", "-o", name}), 3, "none.png");
     expect_error_line(run_fase({"atlas", sprites + "/a.png", sprites + "/a.png", "-o", name}), 2, "a.png");
     expect_error_line(run_fase({"atlas", sprites + "/a.png", "-o", sprites + "/a"}), 3, "found an input file");
     expect_error_line(run_fase({"atlas", out, "-o", name}), 2, "found no .png file");
     EXPECT_EQ(files_in(out), 0u);
+}
+
+TEST(AtlasCommand, ListsAllBadImagesAtOnce) {
+    const TemporaryFolder folder;
+    const std::string sprites = make_sprites(folder), name = folder / "sheet";
+    write_file(sprites + "/torn.png", read_file(sprites + "/a.png").substr(0, 40));
+    expect_error_line(run_fase({"atlas", sprites, "-o", name}), 2, "--skip-bad leaves it out");
+    write_file(sprites + "/photo.png", "\xff\xd8\xff\xe0 JFIF");
+    write_file(sprites + "/empty.png", "");
+    const Outcome refused = run_fase({"atlas", sprites, "-o", name});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 4) << refused.err;
+    for (const char* words : {"/empty.png: found an empty file", "/photo.png: found a JPEG image", "/torn.png: byte ",
+                              "found that 3 of 8 images cannot be read; --skip-bad leaves them out\n"})
+        EXPECT_NE(refused.err.find(words), std::string::npos) << words << " is not in\n" << refused.err;
+    EXPECT_FALSE(fs::exists(name + ".png"));
+}
+
+TEST(AtlasCommand, LeavesOutBadImagesOnRequest) {
+    const TemporaryFolder folder;
+    const std::string sprites = make_sprites(folder), name = folder / "sheet";
+    write_file(sprites + "/photo.png", "\xff\xd8\xff\xe0 JFIF");
+    write_file(sprites + "/torn.png", read_file(sprites + "/a.png").substr(0, 40));
+    const Outcome made = run_fase({"atlas", sprites, "-o", name, "--skip-bad", "--json"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(made.err.starts_with("fase: warning: ")) << made.err;
+    EXPECT_TRUE(made.err.ends_with("fase: warning: 2 of 7 images cannot be read and are left out\n")) << made.err;
+    const auto json = scene::parse_json(made.out);
+    ASSERT_TRUE(json) << made.out;
+    EXPECT_EQ(number_at(json->root(), "count"), 5);
+    EXPECT_EQ(number_at(json->root(), "skipped"), 2);
+    const Outcome none = run_fase({"atlas", sprites + "/torn.png", "-o", folder / "other", "--skip-bad"});
+    EXPECT_EQ(none.code, 2);
+    EXPECT_NE(none.err.find("1 of 1 images cannot be read; expected at least one good one"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder / "other.png"));
+    expect_error_line(run_fase({"atlas", "--rects", sprites + "/notes.txt", "--skip-bad"}), 2,
+                      "--skip-bad: found --rects");
 }
 
 TEST(AtlasCommand, RefusesALinkThatLeavesTheFolder) {
