@@ -14,7 +14,9 @@
 #include "cli/common/output.hpp"
 #include "cli/common/progress.hpp"
 #include "cli/common/table.hpp"
+#include "cli/measure_mix.hpp"
 #include "cli/measure_pairs.hpp"
+#include "cli/mix.hpp"
 #include "fase/core/simd.hpp"
 #include "fase/scene/detail/json.hpp"
 
@@ -96,9 +98,12 @@ int run_pairs(const PairsOptions& options) {
     }
     const Result<std::vector<StructureChoice>> choices = structures_named(options.structure);
     if (!choices) return refuse(choices.error());
-    const bool is_bounded = options.structure == "all";
+    if (!options.mix.empty())
+        if (auto parsed = parse_mix(options.mix); !parsed) return refuse(parsed.error());
+    const bool is_bounded = options.structure == "all" || !options.mix.empty();
     if (options.limit && !is_bounded)
-        return refuse({Status::BadArgument, "--limit", "found a single structure; expected --structure all", {}});
+        return refuse(
+            {Status::BadArgument, "--limit", "found a single structure; expected --structure all or --mix", {}});
     if (auto checked = check_input(options.trace, {"pairs", input::traces, input::trace_kinds}); !checked)
         return refuse(checked.error());
     Result<record::TraceReader> trace = record::TraceReader::open(options.trace);
@@ -118,6 +123,10 @@ int run_pairs(const PairsOptions& options) {
     const Result<TraceSurvey> surveyed = survey(*trace, options.frames, options.check, report);
     if (!surveyed) return refuse(surveyed.error());
     const std::unique_ptr<TaskRunner> tasks = make_thread_runner(options.threads);
+    if (!options.mix.empty()) {
+        if (!options.json) fmt::print("{}", head_of(*trace, *surveyed, tasks->threads()));
+        return run_mix(options, *trace, *surveyed, *tasks, report);
+    }
     std::vector<PairFigures> rows;
     for (const StructureChoice& choice : *choices) {
         if (Interrupts::signal() != 0) break;
@@ -140,24 +149,36 @@ void add_pairs(Command& program, CommandRegistry& registry) {
     auto& pairs = registry.options<PairsOptions>();
     Command command = program.add_command("pairs", "Time and check how structures find the pairs of a trace");
     command.add_text("TRACE", "A trace (.aabt) from 'fase generate' or 'fase run --trace'", pairs.trace).required();
-    add_structure(command, "auto (default), all, ", pairs.structure);
+    const Option structure = add_structure(command, "auto (default), all, ", pairs.structure);
+    Option mix = command.add_text(
+        "--mix", "Recommend a structure for so many searches per frame, for example \"1 pairs, 200 rays, 50 boxes\"",
+        pairs.mix);
+    mix.excludes(structure);
     add_threads(command, "0: all cores (default 1)", 0, pairs.threads);
     command.add_text("--simd", "Widest instructions to use: " + simd_levels() + " (default best)", pairs.simd);
     command.add_whole_number("--frames", "The first N frames (default: all)", 1, 0xffffffff, pairs.frames);
-    command.add_positive_number("--limit", "Seconds; with all, structures that take longer are skipped (default 60)",
-                                1e6, [&pairs](double value) { pairs.limit = value; });
-    command.add_flag("--check", "Compare the pairs of each frame with those of a plain sweep", pairs.check);
-    command.add_flag("--changes", "Report which pairs begin, stay and end, instead of listing all", pairs.changes);
+    command.add_positive_number("--limit",
+                                "Seconds; with all or --mix, structures that take longer are skipped (default 60)", 1e6,
+                                [&pairs](double value) { pairs.limit = value; });
+    const Option check =
+        command.add_flag("--check", "Compare the pairs of each frame with those of a plain sweep", pairs.check);
+    const Option changes =
+        command.add_flag("--changes", "Report which pairs begin, stay and end, instead of listing all", pairs.changes);
+    mix.excludes(check);
+    mix.excludes(changes);
     add_json(command, pairs.json);
     command.set_footer(
         "\nExamples:\n"
         "  fase pairs rain.aabt\n"
         "  fase pairs rain.aabt --structure all --check\n"
         "  fase pairs rain.aabt --structure brute_force --frames 10 --threads 4 --json\n"
+        "  fase pairs rain.aabt --mix '1 pairs, 200 rays, 50 boxes'\n"
         "\nA frame's time is the time to update its boxes and to find all pairs of boxes that overlap or touch, "
         "except\n"
         "pairs of two static boxes. The hash covers the pair sets of all frames; the order of pairs does not matter.\n"
-        "Exit code 1: a structure found wrong pairs.");
+        "With --mix one structure answers everything: pairs of awake boxes with all others, random rays and boxes as\n"
+        "those of 'fase query'. Times are means per frame; above 1000 rays or boxes they are extrapolated.\n"
+        "Exit code 1: a structure found wrong pairs, or gave other answers than the first.");
     registry.on(command, [&pairs] { return run_pairs(pairs); });
 }
 

@@ -104,7 +104,7 @@ TEST(CommandLine, OptionsWithoutEffectAreRefused) {
          "--html: found --port with it; expected one of the two"},
         {{"view", "x", "--port", "0", "--glb", folder / "x.glb"}, "--glb: found --port with it"},
         {{"generate", "stack", "--frames", "3", "-o", folder / "x.glb"}, "--frames: found a scene"},
-        {{"pairs", trace, "--limit", "3"}, "--limit: found a single structure; expected --structure all"},
+        {{"pairs", trace, "--limit", "3"}, "--limit: found a single structure; expected --structure all or --mix"},
         {{"atlas", "--rects", sizes, "--trim"}, "--trim: found --rects with it"},
         {{"atlas", "--rects", sizes, "--array"}, "--array: found --rects with it"},
         {{"atlas", "--rects", sizes, "--tries", "3", "--budget-ms", "3"}, "--budget-ms: found --tries with it"},

@@ -162,6 +162,63 @@ TEST_F(Pairs, RefusesInvalidOptionsByName) {
     expect_error_line(run_fase({"pairs"}), 2, "TRACE");
 }
 
+TEST_F(Pairs, RecommendsAStructureForAMix) {
+    ASSERT_EQ(run_fase({"generate", "mixed", "--count", "500", "--frames", "6", "-o", trace}).code, 0);
+    const std::vector<std::string> mix{"pairs", trace, "--mix", "1 pairs, 20 rays, 5 boxes"};
+    std::vector<std::string> with_json = mix;
+    with_json.push_back("--json");
+    const Outcome outcome = run_fase(with_json);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto document = scene::parse_json(outcome.out);
+    ASSERT_TRUE(document) << outcome.out;
+    const scene::JsonValue root = document->root();
+    expect_keys(root, {"mix", "frames", "best", "agree", "all"});
+    EXPECT_EQ(number_at(*root.find("mix"), "rays"), 20);
+    EXPECT_TRUE(is_true(root, "agree"));
+    double before = 0;
+    std::size_t rows = 0;
+    root.find("all")->for_each_element([&](const scene::JsonValue& row) {
+        if (rows == 0) {
+            EXPECT_EQ(text_at(row, "structure"), text_at(root, "best"));
+        }
+        ++rows;
+        const double sum = number_at(row, "update_ms") + number_at(row, "pairs_ms") + number_at(row, "rays_ms") +
+                           number_at(row, "boxes_ms");
+        EXPECT_NEAR(number_at(row, "total_ms"), sum, 1e-4 * sum);
+        EXPECT_GE(number_at(row, "total_ms"), before);
+        before = number_at(row, "total_ms");
+    });
+    std::size_t structures = 0;
+    broad::for_each_structure([&]<broad::Structure S>() { ++structures; });
+    EXPECT_EQ(rows, structures);
+    const Outcome table = run_fase(mix);
+    EXPECT_NE(table.out.find("\nrecommended for 1 pairs, 20 rays, 5 boxes per frame: "), std::string::npos)
+        << table.out;
+}
+
+TEST_F(Pairs, AMixOfOneKindCostsNothingElse) {
+    const Outcome outcome = run_fase({"pairs", trace, "--mix", "3 rays", "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto document = scene::parse_json(outcome.out);
+    ASSERT_TRUE(document) << outcome.out;
+    document->root().find("all")->for_each_element([](const scene::JsonValue& row) {
+        EXPECT_EQ(number_at(row, "pairs_ms"), 0);
+        EXPECT_EQ(number_at(row, "boxes_ms"), 0);
+    });
+}
+
+TEST_F(Pairs, RefusesInvalidMixes) {
+    for (const char* mix : {"", " ", "1", "pairs", "1 cats", "1 pairs 2 rays", "1 pairs, 2 pairs", "-1 rays", "0 rays",
+                            "1.5 rays", "1 pairs,", "1001 pairs", "1000001 rays"})
+        expect_error_line(run_fase({"pairs", trace, "--mix", mix}), 2, "--mix: found \"");
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{"--check"}, {"--changes"}, {"--structure", "all"}}) {
+        std::vector<std::string> all{"pairs", trace, "--mix", "1 pairs"};
+        all.insert(all.end(), options.begin(), options.end());
+        expect_error_line(run_fase(all), 2, "expected one of the two");
+    }
+}
+
 TEST_F(Pairs, TooManyPairsAreRefusedBeforeTheSearch) {
     write_trace(trace, {std::vector<Aabb>(60000, cube_at(0))}, std::vector<std::uint8_t>(60000, 0));
     expect_error_line(run_fase({"pairs", trace}), 4, "frame 0: found about 1.8e+09 pairs; expected at most 268435456");
