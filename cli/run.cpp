@@ -19,6 +19,7 @@
 #include "cli/level/scene.hpp"
 #include "cli/run_summary.hpp"
 #include "cli/scene_look.hpp"
+#include "cli/scene_physics.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/record/recorder.hpp"
 #include "fase/record/world_trace.hpp"
@@ -101,7 +102,8 @@ Result<scene::Scene> load(const RunOptions& options, std::optional<LevelScene>& 
     return std::move(level->scene);
 }
 
-Result<Run> prepare(const RunOptions& options) {
+/// Checks what can be checked before the scene is read.
+Result<void> check_options(const RunOptions& options) {
     if (options.structure != "auto") {
         if (auto structure = broad::AnyStructure::named(options.structure); !structure) {
             return Error{Status::BadArgument,
@@ -111,10 +113,45 @@ Result<Run> prepare(const RunOptions& options) {
                          {}};
         }
     }
-    if (auto writable = check_outputs(options); !writable) return writable.error();
-    std::optional<LevelScene> level;
-    const Result<scene::Scene> scene = load(options, level);
+    return check_outputs(options);
+}
+
+/// A scene, what was added to it, and the warnings about it.
+struct LoadedScene {
+    scene::Scene scene;
+    std::optional<LevelScene> level;  ///< without its scene
+    std::optional<scene::AutoColliders> made;
+};
+
+Result<LoadedScene> load_with_colliders(const RunOptions& options) {
+    LoadedScene loaded;
+    Result<scene::Scene> scene = load(options, loaded.level);
     if (!scene) return scene.error();
+    loaded.scene = *std::move(scene);
+    if (options.auto_colliders.empty()) return loaded;
+    const auto made = add_auto_colliders(loaded.scene, {options.auto_colliders, options.static_nodes});
+    if (!made) return made.error();
+    loaded.made = *made;
+    return loaded;
+}
+
+/// Describes the scene in the summary, warnings included.
+void describe(const RunOptions& options, const LoadedScene& loaded, RunSummary& summary) {
+    const scene::Scene& scene = loaded.scene;
+    summary.scene = options.scene;
+    summary.bodies = scene.bodies.size();
+    summary.dynamic_bodies = scene::dynamic_bodies(scene);
+    summary.shapes = scene.shapes.size();
+    summary.joints = scene.joints.size();
+    summary.warnings = physics_warnings(scene, loaded.made ? &*loaded.made : nullptr);
+    summary.show_hash = options.hash;
+    if (!loaded.made) return;
+    summary.made = text_of(*loaded.made, options.auto_colliders);
+    summary.made_colliders = loaded.made->colliders;
+}
+
+Result<Run> prepare(const RunOptions& options, LoadedScene& loaded) {
+    const scene::Scene* const scene = &loaded.scene;
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const int threads = options.threads > 0 ? options.threads : cores;
     Result<World> made =
@@ -126,13 +163,8 @@ Result<Run> prepare(const RunOptions& options) {
         error.where = options.scene + ": " + error.where;
         return error;
     }
-    Run run{*std::move(made), *ids, std::move(level), {}, {}, {}};
-    run.summary.scene = options.scene;
-    run.summary.bodies = scene->bodies.size();
-    run.summary.dynamic_bodies = scene::dynamic_bodies(*scene);
-    run.summary.shapes = scene->shapes.size();
-    run.summary.joints = scene->joints.size();
-    run.summary.warnings = scene->warnings;
+    Run run{*std::move(made), *ids, std::move(loaded.level), {}, {}, {}};
+    describe(options, loaded, run.summary);
     run.summary.threads = threads;
     const Result<std::uint64_t> steps = steps_of(options, run.world.settings().time_step);
     if (!steps) return steps.error();
@@ -194,7 +226,14 @@ Result<void> finish_files(Run& run) {
 
 int run_scene(const RunOptions& options) {
     const Interrupts interrupts;
-    Result<Run> run = prepare(options);
+    if (auto checked = check_options(options); !checked) return refuse(checked.error());
+    Result<LoadedScene> loaded = load_with_colliders(options);
+    if (!loaded) return refuse(loaded.error());
+    if (const auto nothing = find_nothing_physical(loaded->scene, options.scene)) {
+        refuse(*nothing);
+        return exit_check_failed;
+    }
+    Result<Run> run = prepare(options, *loaded);
     if (!run) return refuse(run.error());
     const Result<void> simulated = simulate(*run, progress_form(options.json));
     const Result<void> recorded = finish_files(*run);
@@ -231,18 +270,30 @@ void add_run(Command& program, CommandRegistry& registry) {
     command.add_flag("--no-sleep", "No body falls asleep", run.keep_awake);
     add_count(command, "Of a kind or a WAD: approximate number of bodies", run.count);
     add_seed(command, "Of a kind or a WAD: seed of the random numbers (default 1)", run.seed);
+    const Option auto_colliders =
+        command.add_text("--auto-colliders", "hull or box: give each mesh without a collider one, and make it a body",
+                         run.auto_colliders);
+    command
+        .add_text("--static", "Of these: nodes whose names match this regular expression are static", run.static_nodes)
+        .needs(auto_colliders);
     const Option record = command.add_text("--record", "Write a recording for 'fase view'", run.record);
     command.add_flag("--contacts", "Record all contact points too", run.record_contacts).needs(record);
     command.add_flag("--durable", "Force each block of the recording to the disk (power loss)", run.durable)
         .needs(record);
     command.add_text("--trace", "Write the colliders' boxes of each step for 'fase pairs' (.aabt)", run.trace);
-    add_json(command, run.json);
+    const Option hash = command.add_flag("--hash", "Print the hash of the world's final state", run.hash);
+    add_json(command, run.json).excludes(hash);
     command.set_footer(
         "\nExamples:\n"
         "  fase run castle --seconds 12 --record castle.faserec\n"
         "  fase run scene.glb --steps 600 --threads 4 --json\n"
         "  fase run pile --count 500 --structure brute_force --trace pile.aabt\n"
         "  fase run freedoom1.wad --map E1M1 --count 300 --record e1m1.faserec\n"
+        "  fase run yard.glb --auto-colliders hull --static 'ground|wall' --record yard.faserec\n"
+        "\nAutomatic colliders: nodes with a mesh become dynamic bodies of 1000 kg/m³; meshes below such a node "
+        "belong\n"
+        "to it. Hulls fill hollows, so a room becomes solid. Flat meshes become 0.1 m thick.\n"
+        "Exit code 1: nothing in the scene has physics.\n"
         "\nCtrl-C ends the run after the current step; the recording up to there is kept.");
     registry.on(command, [&run] { return run_scene(run); });
 }

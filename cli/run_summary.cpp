@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "bench/timing.hpp"
+#include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
 #include "fase/scene/detail/json.hpp"
 
@@ -43,13 +44,14 @@ void RunSummary::add(const StepReport& report) {
 }
 
 void RunSummary::add_step_warnings() {
+    std::vector<std::string> found;
     if (quarantined > 0)
-        warnings.push_back(
+        found.push_back(
             fmt::format("bodies disabled because their state became NaN or infinite ({} times)", quarantined));
-    if (pairs_dropped > 0)
-        warnings.push_back(fmt::format("pairs above the limit were dropped ({} times)", pairs_dropped));
+    if (pairs_dropped > 0) found.push_back(fmt::format("pairs above the limit were dropped ({} times)", pairs_dropped));
     if (speed_clamped > 0)
-        warnings.push_back(fmt::format("body speeds were clamped to the limit ({} times)", speed_clamped));
+        found.push_back(fmt::format("body speeds were clamped to the limit ({} times)", speed_clamped));
+    warnings.insert(warnings.begin(), found.begin(), found.end());
 }
 
 std::uint64_t peak_memory_bytes() {
@@ -76,10 +78,10 @@ std::string to_json(const RunSummary& s) {
     return text + fmt::format(
                       "\"seconds\": {:.9g}, \"structure\": {}, \"threads\": {}, \"contact_points\": {}, \"asleep\": "
                       "{}, \"world_bytes\": {}, \"frames\": {}, \"recording_bytes\": {}, \"trace_frames\": {}, "
-                      "\"trace_bytes\": {}, \"outside\": {}}}\n",
+                      "\"trace_bytes\": {}, \"outside\": {}, \"auto_colliders\": {}}}\n",
                       s.simulated_seconds, scene::quoted(s.last.structure), s.threads, s.peak_points, s.last.asleep,
                       s.last.bytes, s.recorded_frames, s.recorded_bytes, s.traced_frames, s.traced_bytes,
-                      s.outside ? std::to_string(*s.outside) : "null");
+                      s.outside ? std::to_string(*s.outside) : "null", s.made_colliders);
 }
 
 std::string to_table(const RunSummary& s) {
@@ -88,8 +90,10 @@ std::string to_table(const RunSummary& s) {
         text += fmt::format("{:<10} {}\n", name, value);
     };
     const bench::Timing timing = bench::timing_of(s.step_ms);
+    for (const std::string& warning : s.warnings) line("warning", printable(warning));
     line("scene", printable(s.scene));
     line("bodies", fmt::format("{}, {} of them dynamic, {} shapes", s.bodies, s.dynamic_bodies, s.shapes));
+    if (!s.made.empty()) line("colliders", s.made);
     if (s.joints > 0) line("joints", fmt::format("{}, not simulated yet", s.joints));
     line("steps", fmt::format("{}{}, {:.6g} s simulated", s.step_ms.size(),
                               s.step_ms.size() < s.requested_steps ? fmt::format(" of {}", s.requested_steps) : "",
@@ -108,16 +112,17 @@ std::string to_table(const RunSummary& s) {
     if (s.outside) line("outside", fmt::format("{} bodies at the end", *s.outside));
     line("memory",
          fmt::format("at most {}, {} of it the world", bytes_text(peak_memory_bytes()), bytes_text(s.last.bytes)));
-    line("hash", hex(s.hash));
+    if (s.show_hash) line("hash", hex(s.hash));
     if (!s.recording.empty()) {
         line("recording",
              fmt::format("{}: {} frames, {}", printable(s.recording), s.recorded_frames, bytes_text(s.recorded_bytes)));
+        line("", fmt::format("look at it: fase view {}", printable(shell_word(s.recording))));
     }
     if (!s.trace.empty()) {
         line("trace",
              fmt::format("{}: {} frames, {}", printable(s.trace), s.traced_frames, bytes_text(s.traced_bytes)));
+        line("", fmt::format("measure it: fase pairs {}", printable(shell_word(s.trace))));
     }
-    for (const std::string& warning : s.warnings) line("warning", printable(warning));
     return text;
 }
 

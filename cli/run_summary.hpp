@@ -25,17 +25,20 @@ struct RunSummary {
     // The end of the run.
     double simulated_seconds = 0;
     std::uint64_t hash = 0;
+    bool show_hash = false;              ///< in the table
     std::optional<std::size_t> outside;  ///< of a level: bodies outside it
     std::uint64_t requested_steps = 0;
     int threads = 1;
-    std::vector<std::string> warnings;  ///< without duplicates
-    std::string recording;              ///< file name; empty: none
+    std::vector<std::string> warnings;  ///< the worst first
+    std::string made;                   ///< what automatic colliders were added; empty: none
+    std::size_t made_colliders = 0;
+    std::string recording;  ///< file name; empty: none
     std::uint64_t recorded_frames = 0, recorded_bytes = 0;
     std::string trace;  ///< file name; empty: none
     std::uint64_t traced_frames = 0, traced_bytes = 0;
 
     void add(const StepReport& report);
-    /// Adds warnings about limits that steps reached.
+    /// Puts warnings about limits that steps reached before all others.
     void add_step_warnings();
 };
 

@@ -35,6 +35,7 @@
 #include "fase/record/tables.hpp"
 #include "fase/record/trace.hpp"
 #include "fase/record/world_trace.hpp"
+#include "fase/scene/auto_colliders.hpp"
 #include "fase/scene/generate.hpp"
 #include "fase/scene/gltf.hpp"
 #include "fase/scene/gltf_write.hpp"

@@ -60,7 +60,7 @@ std::string compared_with_fase(const std::vector<bench::StepRow>& rows, const be
         row.mean_height - fase->mean_height);
 }
 
-std::string to_table(const std::vector<bench::StepRow>& rows) {
+std::string to_table(const std::vector<bench::StepRow>& rows, bool show_hash) {
     std::string text;
     for (const bench::StepRow& row : rows) {
         text += fmt::format(
@@ -72,7 +72,7 @@ std::string to_table(const std::vector<bench::StepRow>& rows) {
             "drift {:.3f} m\n",
             "", row.steps, row.rounds, row.threads, row.threads == 1 ? "" : "s", row.bodies, row.contacts,
             row.top_height, row.mean_height, row.drift);
-        text += fmt::format("{:22} {}{}{}\n", "", row.settings, row.hash ? ", hash " + hash_text(row) : "",
+        text += fmt::format("{:22} {}{}{}\n", "", row.settings, show_hash && row.hash ? ", hash " + hash_text(row) : "",
                             row.repeats ? "" : ", rounds DIFFER");
         const std::string comparison = compared_with_fase(rows, row);
         if (!comparison.empty()) text += fmt::format("{:22} {}\n", "", comparison);
@@ -145,7 +145,7 @@ int run_bench_step(const BenchStepOptions& options) {
         if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
         rows.insert(rows.end(), measured->begin(), measured->end());
     }
-    const std::string text = options.json ? to_json(rows) : to_table(rows);
+    const std::string text = options.json ? to_json(rows) : to_table(rows, options.hash);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_repeat =
@@ -164,7 +164,8 @@ void add_bench_step(Command& group, CommandRegistry& registry) {
     command.add_whole_number("--rounds", "Repetitions of the whole measurement (default 3)", 1, 1000, bench.rounds);
     add_count(command, "Bodies, roughly (default: the scene's)", bench.count);
     command.add_text("--csv", "Append the rows to this CSV file", bench.csv);
-    add_json(command, bench.json);
+    const Option hash = command.add_flag("--hash", "Print the hashes of the final states", bench.hash);
+    add_json(command, bench.json).excludes(hash);
     command.set_footer(
         "\nExamples:\n"
         "  fase bench step --scene large_pyramid\n"

@@ -11,6 +11,7 @@ class CommandRegistry;
 
 struct BenchStepOptions : bench::StepOptions {
     std::string csv;    ///< rows are appended to this CSV file; empty: none
+    bool hash = false;  ///< print hashes in the table
     bool json = false;  ///< one JSON array on stdout instead of a table
 };
 

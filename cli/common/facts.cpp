@@ -1,6 +1,8 @@
 /// The facts that `fase info` prints about a file: named texts, numbers, lists and counts.
 #include "cli/common/facts.hpp"
 
+#include <algorithm>
+
 #include "cli/common/output.hpp"
 #include "fase/scene/detail/json.hpp"
 
@@ -30,7 +32,9 @@ std::string Facts::json() const {
 
 std::string Facts::lines() const {
     std::string text;
-    for (const Entry& entry : entries_) {
+    std::vector<Entry> entries = entries_;
+    std::stable_partition(entries.begin(), entries.end(), [](const Entry& entry) { return entry.key == "warnings"; });
+    for (const Entry& entry : entries) {
         std::string_view key = entry.key;
         const auto line = [&](std::string_view value) {
             text += fmt::format("{:<20} {}\n", std::exchange(key, ""), printable(value));

@@ -29,7 +29,7 @@ public:
     void add(std::string key, Counts counts) { entries_.push_back({std::move(key), std::move(counts)}); }
 
     [[nodiscard]] std::string json() const;
-    /// Safe to print on a terminal; empty lists are omitted.
+    /// Safe to print on a terminal; warnings come first, empty lists are omitted.
     [[nodiscard]] std::string lines() const;
 
 private:

@@ -74,7 +74,8 @@ Result<std::vector<Aabb>> boxes_of(const scene::Scene& scene, const std::string&
         }
     }
     if (boxes.empty())
-        return Error{Status::BadArgument, name, "found a scene without colliders; expected at least one", {}};
+        return Error{Status::BadArgument, name, "found a scene without colliders; expected at least one",
+                     "'fase run' with --auto-colliders and --trace writes boxes of its meshes"};
     return boxes;
 }
 

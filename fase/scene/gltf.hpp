@@ -28,7 +28,7 @@ namespace fase::scene {
 ///   colliders of zero volume are skipped.
 /// - Meshes of nodes are kept as visuals, in the colour of their material; textures, skins, morph targets, animations
 /// and
-///   lights are not. Scene::warnings lists everything unsupported, without duplicates and with a count.
+///   lights are not. Scene::warnings lists everything unsupported, counted.
 ///
 /// Errors: Io if the file cannot be opened; Format with "FILE: byte N" or "FILE: /json/pointer" for an invalid file;
 /// Unsupported if it requires an unsupported extension; NoMemory. Reads other files only from the file's folder and

@@ -36,6 +36,14 @@ struct Visual {
     friend bool operator==(const Visual&, const Visual&) = default;
 };
 
+/// A node of a file that has a mesh and no body: a range of Scene::scenery.
+struct SceneryNode {
+    std::string name;                     ///< may be empty, need not be unique
+    std::optional<std::uint32_t> parent;  ///< the nearest such node above it: a lower index in Scene::scenery_nodes
+    std::uint32_t first = 0, count = 0;
+    friend bool operator==(const SceneryNode&, const SceneryNode&) = default;
+};
+
 /// One collider of a body.
 struct Collider {
     std::uint32_t shape = 0;  ///< index in Scene::shapes
@@ -83,16 +91,18 @@ struct Scene {
     std::string name;
     Vec3 gravity{0, -9.81f, 0};  ///< m/s²
     std::vector<Body> bodies;
-    std::vector<Shape> shapes;    ///< shared by colliders
-    std::vector<Mesh> meshes;     ///< shared by visuals
-    std::vector<Visual> scenery;  ///< visuals without a body: drawn only
+    std::vector<Shape> shapes;               ///< shared by colliders
+    std::vector<Mesh> meshes;                ///< shared by visuals
+    std::vector<Visual> scenery;             ///< visuals without a body: drawn only
+    std::vector<SceneryNode> scenery_nodes;  ///< of the file, parents first, together all of the scenery; may be empty
     std::vector<Joint> joints;
     std::optional<Camera> camera;
     SettingsHint settings;
     std::vector<std::string> extensions_used;  ///< as listed in the file
     std::vector<std::string> extensions_required;
-    /// Unsupported parts of the file, without duplicates and with a count: "triangle-mesh colliders are not simulated
-    /// yet (3 times)".
+    /// Unsupported parts of the file, counted: "triangle-mesh colliders are not simulated yet (3 times)". What is
+    /// missing in the simulation comes first, then what is simulated otherwise, then unknown parts, then what is not
+    /// drawn.
     std::vector<std::string> warnings;
 };
 

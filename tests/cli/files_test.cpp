@@ -93,11 +93,10 @@ TEST(FileKinds, EachCommandNamesTheKindOfAFileThatItCannotRead) {
     struct Sample {
         std::string file, name;
     };
-    const std::vector<Sample> samples{{"x.wad", "a WAD file"},    {"x.png", "a PNG image"},
-                                      {"x.rec", "a recording"},   {"x.aabt", "a trace"},
-                                      {"x.snap", "a snapshot"},   {"x.zst", "a zstd archive"},
-                                      {"x.gz", "a gzip archive"}, {"x.none", "an empty file"},
-                                      {"x.glb", "a glTF scene"},  {"x.json", "a JSON file"}};
+    const std::vector<Sample> samples{
+        {"x.wad", "a WAD file"},   {"x.png", "a PNG image"},    {"x.rec", "a recording"},   {"x.aabt", "a trace"},
+        {"x.snap", "a snapshot"},  {"x.zst", "a zstd archive"}, {"x.gz", "a gzip archive"}, {"x.none", "an empty file"},
+        {"x.glb", "a glTF scene"}, {"x.json", "a JSON file"}};
     const std::string rest(200, '\0');
     write_file(folder / "x.wad", "IWAD" + rest);
     write_file(folder / "x.png", "\x89PNG\r\n\x1a\n" + rest);

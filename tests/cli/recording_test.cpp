@@ -42,6 +42,7 @@ TEST(Recording, ContainsTheInitialStateAndEveryStep) {
     const Outcome outcome = run_fase({"run", "castle", "--count", "100", "--steps", "25", "--record", file});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("recording  " + file + ": 26 frames"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("\n           look at it: fase view " + file + "\n"), std::string::npos) << outcome.out;
     Result<Player> player = Player::open(file);
     ASSERT_TRUE(player) << player.error().text();
     EXPECT_TRUE(player->complete());
@@ -120,7 +121,7 @@ TEST(Recording, ASignalEndsTheRunWithACompleteRecording) {
         EXPECT_EQ(outcome.code, 128 + signal);
         EXPECT_LT(Clock::now() - begin, std::chrono::seconds(1));
         EXPECT_NE(outcome.out.find(" of 10000000"), std::string::npos) << outcome.out;
-        EXPECT_NE(outcome.out.find("hash "), std::string::npos) << outcome.out;
+        EXPECT_NE(outcome.out.find("look at it: fase view "), std::string::npos) << outcome.out;
         Result<Player> player = Player::open(file);
         ASSERT_TRUE(player) << player.error().text();
         EXPECT_TRUE(player->complete()) << player->lost();

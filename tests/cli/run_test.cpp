@@ -43,11 +43,24 @@ TEST(Run, PrintsTheKeysThatScriptsRelyOn) {
 TEST(Run, PrintsATable) {
     const Outcome outcome = run_fase({"run", "stack", "--count", "5", "--steps", "30"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* line :
-         {"scene      stack\n", "bodies     6, 5 of them dynamic", "steps      30, 0.5 s simulated", "ms/step    ",
-          "stages     refresh ", "contacts   at most 5", "memory     ", "hash       "}) {
+    for (const char* line : {"scene      stack\n", "bodies     6, 5 of them dynamic", "steps      30, 0.5 s simulated",
+                             "ms/step    ", "stages     refresh ", "contacts   at most 5", "memory     "}) {
         EXPECT_NE(outcome.out.find(line), std::string::npos) << line << " is not in\n" << outcome.out;
     }
+    EXPECT_EQ(outcome.out.find("hash "), std::string::npos) << outcome.out;
+}
+
+TEST(Run, PrintsTheHashOnRequest) {
+    const std::vector<std::string> run{"run", "stack", "--count", "2", "--steps", "3"};
+    std::vector<std::string> with_hash = run;
+    with_hash.push_back("--hash");
+    const Outcome outcome = run_fase(with_hash);
+    EXPECT_NE(outcome.out.find("hash       " + hash_of(run) + "\n"), std::string::npos) << outcome.out;
+    expect_error_line(run_fase({"run", "stack", "--hash", "--json"}), 2, "expected one of the two");
+    EXPECT_EQ(run_fase({"bench", "step", "--scene", "large_pyramid", "--engine", "fase", "--count", "3", "--steps", "2",
+                        "--rounds", "1"})
+                  .out.find("hash"),
+              std::string::npos);
 }
 
 TEST(Run, ConvertsSecondsToSteps) {

@@ -263,6 +263,31 @@ TEST(GltfOlderNames, OmiBodiesOfTheFirstVersionAreRead) {
     expect_near(scene.gravity, Vec3{0, -1.62f, 0});
 }
 
+TEST(GltfReader, SummarisesWarningsThatDifferOnlyInNames) {
+    std::string used, textures;
+    for (int i = 0; i < 1000; ++i) {
+        used += (i == 0 ? "\"" : ", \"") + std::string("ACME_") + std::to_string(1000 + i) + "\"";
+        textures += i == 0 ? "{}" : ", {}";
+    }
+    const Result<Scene> scene = test::read_text(R"({"asset": {"version": "2.0"}, "extensionsUsed": [)" + used +
+                                                R"(, "KHR_materials_unlit"], "textures": [)" + textures + "]}");
+    ASSERT_TRUE(scene) << scene.error().text();
+    EXPECT_EQ(scene->warnings,
+              (std::vector<std::string>{
+                  "extension \"ACME_1000\" is not supported, and 999 more of this kind (1000 times)",
+                  "extension \"KHR_materials_unlit\" is not supported", "textures are not drawn (1000 times)"}));
+}
+
+TEST(GltfReader, WarnsOfTheWorstFirst) {
+    const Scene scene = read("unknown.gltf");
+    const auto place = [&](std::string_view text) {
+        return std::find(scene.warnings.begin(), scene.warnings.end(), text) - scene.warnings.begin();
+    };
+    EXPECT_LT(place("colliders without a supported shape are skipped (2 times)"),
+              place("extension \"ACME_sparkles\" is not supported"));
+    EXPECT_LT(place("extension \"ACME_sparkles\" is not supported"), place("animations are not played"));
+}
+
 TEST(GltfReader, WarnsOnceAboutEachUnsupportedPart) {
     const Scene scene = read("unknown.gltf");
     EXPECT_TRUE(warns(scene, "extension \"ACME_sparkles\" is not supported"));

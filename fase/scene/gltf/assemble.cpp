@@ -77,7 +77,10 @@ std::uint64_t user_number(JsonValue extras, std::string_view key) {
 class Assembler {
 public:
     explicit Assembler(Document& document)
-        : document_(document), physics_(document, warnings_), owners_(document.nodes().size(), no_index) {}
+        : document_(document),
+          physics_(document, warnings_),
+          owners_(document.nodes().size(), no_index),
+          scenery_nodes_(document.nodes().size(), no_index) {}
 
     Scene run() {
         read_head();
@@ -131,12 +134,14 @@ private:
                            "save the file without it"}};
         }
         for (const std::string& name : scene_.extensions_used) {
-            if (!is_supported(name)) warnings_.add(fmt::format("extension {} is not supported", quoted_short(name)));
+            if (is_supported(name)) continue;
+            warnings_.add_named("extension {} is not supported", quoted_short(name),
+                                affects_only_appearance(name) ? Harm::Unseen : Harm::Unknown);
         }
-        for (const auto& [key, text] : {std::pair{"animations", "animations are not played"},
-                                        {"skins", "skins are not applied"},
-                                        {"textures", "textures are not drawn"}}) {
-            if (root.find(key)) warnings_.add(text);
+        for (const auto& [key, text] :
+             {std::pair{"animations", "animations are not played"}, {"textures", "textures are not drawn"}}) {
+            const std::optional<JsonValue> list = member(root, key, JsonKind::Array);
+            for (std::size_t i = 0; list && i < list->size(); ++i) warnings_.add(text, Harm::Unseen);
         }
         if (const std::optional<Vec3> gravity = physics_.gravity()) scene_.gravity = *gravity;
         if (const std::optional<JsonValue> own = fase_extras(root)) {
@@ -175,12 +180,14 @@ private:
         }
         owners_[node] = owner;
         if (const auto mesh = index_in(json, "mesh", document_.meshes().size(), "meshes")) {
-            add_visuals(*mesh, place,
-                        owner != no_index      ? owner
-                        : static_node_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
-                                               : no_index);
+            const std::uint32_t body = owner != no_index      ? owner
+                                       : static_node_ == node ? static_cast<std::uint32_t>(scene_.bodies.size() - 1)
+                                                              : no_index;
+            const auto first = static_cast<std::uint32_t>(scene_.scenery.size());
+            add_visuals(*mesh, place, body);
+            if (scene_.scenery.size() > first) add_scenery_node(node, first);
         }
-        if (json.find("skin")) warnings_.add("skins are not applied");
+        if (json.find("skin")) warnings_.add("skins are not applied", Harm::Unseen);
         if (auto joint = physics_.joint(node)) joints_.push_back({node, *joint});
         if (const auto camera = json.find("camera")) read_camera(*camera, place, own);
     }
@@ -240,7 +247,7 @@ private:
         if (!place_shape(json, use, linear, collider)) return;
         if (std::holds_alternative<HalfSpace>(scene_.shapes[collider.shape]) &&
             scene_.bodies[body_index].def.kind == BodyKind::Dynamic) {
-            warnings_.add("infinite planes on moving bodies are skipped");
+            warnings_.add("infinite planes on moving bodies are skipped", Harm::Missing);
             return;
         }
         collider.name = document_.name(node) == scene_.bodies[body_index].name ? std::string() : document_.name(node);
@@ -267,15 +274,15 @@ private:
     bool place_shape(JsonValue node, const ColliderUse& use, const Mat3d& linear, Collider& collider) {
         const ShapeSource& source = *use.source;
         if (!source.shape && !source.mesh && !source.node) {
-            warnings_.add("colliders without a supported shape are skipped");
+            warnings_.add("colliders without a supported shape are skipped", Harm::Missing);
             return false;
         }
         if (!source.shape && !source.convex) {
-            warnings_.add("triangle-mesh colliders are not simulated yet");
+            warnings_.add("triangle-mesh colliders are not simulated yet", Harm::Missing);
             return false;
         }
         if (!(std::abs(determinant(linear)) > 1e-18)) {
-            warnings_.add("colliders of nodes with a zero scale are skipped");
+            warnings_.add("colliders of nodes with a zero scale are skipped", Harm::Missing);
             return false;
         }
         const bool rigid = is_rotation(linear);
@@ -329,7 +336,7 @@ private:
         }
         Result<ConvexHull> hull = build_convex_hull(points);
         if (!hull) {
-            warnings_.add(fmt::format("a convex collider is skipped: {}", hull.error().problem));
+            warnings_.add_named("a convex collider is skipped: {}", hull.error().problem, Harm::Missing);
             return;
         }
         out.first = add_shape(*std::move(hull));
@@ -349,7 +356,7 @@ private:
         visual.linear = to_float(linear);
         for (const Primitive& primitive : document_.primitives(mesh)) {
             if (primitive.mode < 4) {
-                warnings_.add("points and lines are not drawn");
+                warnings_.add("points and lines are not drawn", Harm::Unseen);
                 continue;
             }
             visual.mesh = mesh_of(primitive);
@@ -369,6 +376,16 @@ private:
         scene_.meshes.push_back(std::move(mesh));
         entry->second = static_cast<std::uint32_t>(scene_.meshes.size() - 1);
         return entry->second;
+    }
+
+    /// Notes that the scenery from `first` on belongs to the node.
+    void add_scenery_node(std::uint32_t node, std::uint32_t first) {
+        std::optional<std::uint32_t> above = document_.parent(node);
+        while (above && scenery_nodes_[*above] == no_index) above = document_.parent(*above);
+        scenery_nodes_[node] = static_cast<std::uint32_t>(scene_.scenery_nodes.size());
+        scene_.scenery_nodes.push_back({document_.name(node),
+                                        above ? std::optional(scenery_nodes_[*above]) : std::nullopt, first,
+                                        static_cast<std::uint32_t>(scene_.scenery.size()) - first});
     }
 
     void read_camera(JsonValue index, const Placement& place, std::optional<JsonValue> own) {
@@ -406,9 +423,10 @@ private:
     Warnings warnings_;
     Physics physics_;
     Scene scene_;
-    std::vector<Frame> frames_;             ///< parallel to scene_.bodies
-    std::vector<std::uint32_t> owners_;     ///< by node: the body that moves it
-    std::uint32_t static_node_ = no_index;  ///< the node for whose colliders the last static body was created
+    std::vector<Frame> frames_;                 ///< parallel to scene_.bodies
+    std::vector<std::uint32_t> owners_;         ///< by node: the body that moves it
+    std::vector<std::uint32_t> scenery_nodes_;  ///< by node: its index in Scene::scenery_nodes
+    std::uint32_t static_node_ = no_index;      ///< the node for whose colliders the last static body was created
     std::vector<PendingJoint> joints_;
     std::map<std::pair<const ShapeSource*, MapKey>, std::pair<std::uint32_t, Quat>> shapes_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint64_t>, std::uint32_t> meshes_;

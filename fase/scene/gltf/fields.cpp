@@ -144,14 +144,29 @@ void Warnings::unknown_members(JsonValue object, std::string_view name, std::ini
     object.for_each_member([&](std::string_view key, JsonValue) {
         const bool always_allowed = key == "extras" || key == "extensions" || key == "name";
         if (always_allowed || std::find(known.begin(), known.end(), key) != known.end()) return;
-        add(fmt::format("{} {} is not supported", name, quoted_short(key)));
+        add_named(fmt::format("{} {{}} is not supported", name), quoted_short(key), Harm::Unknown);
     });
 }
 
 std::vector<std::string> Warnings::texts() const {
+    constexpr std::size_t max_names = 3;
     std::vector<std::string> all;
-    for (const auto& [text, count] : counts_)
+    const auto add = [&](const std::string& text, std::size_t count) {
         all.push_back(count == 1 ? text : fmt::format("{} ({} times)", text, count));
+    };
+    for (const auto& [key, names] : counts_) {
+        const auto with_name = [&text = key.second](const std::string& name) {
+            const std::size_t at = name.empty() ? text.npos : text.find("{}");
+            return at == text.npos ? text : text.substr(0, at) + name + text.substr(at + 2);
+        };
+        if (names.size() > max_names) {
+            std::size_t total = 0;
+            for (const auto& [name, count] : names) total += count;
+            add(fmt::format("{}, and {} more of this kind", with_name(names.begin()->first), names.size() - 1), total);
+            continue;
+        }
+        for (const auto& [name, count] : names) add(with_name(name), count);
+    }
     return all;
 }
 

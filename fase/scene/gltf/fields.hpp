@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "fase/core/result.hpp"
@@ -66,17 +67,28 @@ private:
     std::vector<std::uint32_t> indices_;
 };
 
-/// Warnings about unsupported content, without duplicates, with a count.
+/// What unsupported content does to a scene; the worst first.
+enum class Harm : std::uint8_t {
+    Missing,  ///< something is not simulated
+    Changed,  ///< something is simulated otherwise
+    Unknown,  ///< a part of the file that the reader does not know
+    Unseen,   ///< something is not drawn
+};
+
+/// Warnings about unsupported content, counted.
 class Warnings {
 public:
-    void add(const std::string& text) { ++counts_[text]; }
+    void add(const std::string& text, Harm harm = Harm::Changed) { ++counts_[{harm, text}][""]; }
+    /// Adds `text` with `name` in place of its "{}". Texts that differ only in names are summarised.
+    void add_named(const std::string& text, const std::string& name, Harm harm) { ++counts_[{harm, text}][name]; }
     /// Adds "NAME KEY is not supported" for every member of `object` that is not in `known`.
     void unknown_members(JsonValue object, std::string_view name, std::initializer_list<std::string_view> known);
-    /// Returns "text" or "text (3 times)" for each warning, in alphabetical order.
+    /// Returns "text" or "text (3 times)" for each warning, the worst first, then in alphabetical order. More than
+    /// three names of one text become "text with the first name, and 9 more of this kind (20 times)".
     [[nodiscard]] std::vector<std::string> texts() const;
 
 private:
-    std::map<std::string, std::size_t> counts_;
+    std::map<std::pair<Harm, std::string>, std::map<std::string, std::size_t>> counts_;
 };
 
 }  // namespace fase::scene::gltf

@@ -28,7 +28,7 @@ std::string joint_type(const JsonDocument& document, JsonValue joint, Warnings& 
             });
         }
     }
-    if (!Table(document, joint, "drives").empty()) warnings.add("joint drives are not simulated yet");
+    if (!Table(document, joint, "drives").empty()) warnings.add("joint drives are not simulated yet", Harm::Missing);
     const auto free_linear = 3 - std::count(linear.begin(), linear.end(), true),
                free_angular = 3 - std::count(angular.begin(), angular.end(), true);
     if (free_linear == 0 && free_angular == 0) return "fixed";
@@ -44,7 +44,8 @@ CombineMode combine_mode(JsonValue material, std::string_view key, Warnings& war
     if (name == "maximum") return CombineMode::Maximum;
     if (name == "multiply") return CombineMode::Multiply;
     if (name != "average")
-        warnings.add(fmt::format("{} {} is not supported, \"average\" is used", key, quoted_short(name)));
+        warnings.add_named(fmt::format("{} {{}} is not supported, \"average\" is used", key), quoted_short(name),
+                           Harm::Changed);
     // Fase's own mode, which the extension does not define.
     const std::optional<JsonValue> extras = member(material, "extras", JsonKind::Object);
     const std::optional<JsonValue> own =
@@ -126,7 +127,7 @@ Motion Physics::omi_motion(JsonValue json, std::string_view type) {
     else if (type == "kinematic")
         motion.kind = BodyKind::Kinematic;
     else if (type != "dynamic" && type != "rigid")
-        warnings_.add(fmt::format("body type {} is not supported, \"dynamic\" is used", quoted_short(type)));
+        warnings_.add_named("body type {} is not supported, \"dynamic\" is used", quoted_short(type), Harm::Changed);
     if (!motion.mass || *motion.mass == 0) motion.mass = 1;
     if (!motion.centre) motion.centre = Vec3d{};
     if (motion.inertia && (motion.inertia->x == 0 || motion.inertia->y == 0 || motion.inertia->z == 0))
@@ -243,7 +244,7 @@ std::vector<ColliderUse> Physics::colliders(std::uint32_t node) {
         uses.push_back(use);
     }
     if (extension(json, "OMI_physics_gravity"))
-        warnings_.add("gravity zones (OMI_physics_gravity on a node) are not simulated yet");
+        warnings_.add("gravity zones (OMI_physics_gravity on a node) are not simulated yet", Harm::Missing);
     return uses;
 }
 
@@ -334,7 +335,7 @@ std::optional<JointUse> Physics::joint(std::uint32_t node) {
         joint.other = *other;
         joint.collide = flag_in(*use, "enableCollision", false);
         joint.type = joint_type(document_.json(), joints[*kind], warnings_);
-        warnings_.add(fmt::format("joints ({}) are not simulated yet", joint.type));
+        warnings_.add_named("joints ({}) are not simulated yet", joint.type, Harm::Missing);
         return joint;
     };
     const std::optional<JsonValue> khr = extension(json, "KHR_physics_rigid_bodies");
@@ -342,10 +343,10 @@ std::optional<JointUse> Physics::joint(std::uint32_t node) {
         if (auto joint = read(member(*khr, "joint", JsonKind::Object), khr_.joints)) return joint;
     }
     const std::optional<JsonValue> early = extension(json, "KHR_rigid_bodies");
-    if (early && early->find("joint")) warnings_.add("joints of KHR_rigid_bodies are not supported");
+    if (early && early->find("joint")) warnings_.add("joints of KHR_rigid_bodies are not supported", Harm::Missing);
     const std::optional<JsonValue> omi = extension(json, "OMI_physics_joint");
     if (omi && omi->find("constraints")) {
-        warnings_.add("joints made of constraints (an early OMI_physics_joint) are not supported");
+        warnings_.add("joints made of constraints (an early OMI_physics_joint) are not supported", Harm::Missing);
         return std::nullopt;
     }
     return read(omi, omi_joints_);

@@ -146,9 +146,9 @@ ShapeSource read_shape(JsonValue json, ShapeDialect dialect, const Document& doc
     } else if (type == "convex" || type == "trimesh" || type == "mesh" || type == "hull") {
         source.mesh = index_in(p, "mesh", document.meshes().size(), "meshes");
         source.convex = type == "convex" || type == "hull" || flag_in(p, "convexHull", false);
-        if (!source.mesh) warnings.add(fmt::format("{} shapes without a mesh are skipped", type));
+        if (!source.mesh) warnings.add(fmt::format("{} shapes without a mesh are skipped", type), Harm::Missing);
     } else {
-        warnings.add(fmt::format("shape type {} is not supported", quoted_short(type)));
+        warnings.add_named("shape type {} is not supported", quoted_short(type), Harm::Missing);
     }
     if (source.shape) {
         if (const Result<void> checked = check(*source.shape); !checked)
