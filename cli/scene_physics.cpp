@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "cli/common/output.hpp"
 
 namespace fase::cli {
 namespace {
+
+constexpr std::size_t max_matched = 1000;  // bytes of a name; matching takes stack in proportion
 
 std::size_t count_colliders(const scene::Scene& scene) {
     std::size_t count = 0;
@@ -72,12 +75,19 @@ Result<scene::AutoColliders> add_auto_colliders(scene::Scene& scene, const AutoC
     bool matched = false;
     if (*pattern) {
         options.is_static = [&](std::string_view name) {
+            name = name.substr(0, max_matched);
             const bool matches = std::regex_search(name.begin(), name.end(), **pattern);
             matched = matched || matches;
             return matches;
         };
     }
-    const scene::AutoColliders made = scene::add_colliders(scene, options);
+    scene::AutoColliders made;
+    try {
+        made = scene::add_colliders(scene, options);
+    } catch (const std::regex_error&) {
+        return Error{
+            Status::BadArgument, "--static", "found an expression that takes too long; expected a simpler one", {}};
+    }
     if (made.colliders == 0)
         return Error{
             Status::BadArgument, "--auto-colliders", "found no mesh without a collider; expected at least one", {}};

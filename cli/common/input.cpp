@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "fase/record/generate_trace.hpp"
+
 namespace fase::cli {
 namespace {
 
@@ -31,10 +33,24 @@ std::string advice_for(FileKind kind, const std::string& path) {
     return {};
 }
 
+bool reads_traces_only(const InputKinds& expected) {
+    return expected.kinds.size() == 1 && expected.kinds[0] == FileKind::Trace;
+}
+
+bool is_trace_kind(const std::string& name) {
+    const auto kinds = record::trace_kinds();
+    return std::any_of(kinds.begin(), kinds.end(), [&](const record::TraceKind& kind) { return kind.name == name; });
+}
+
 }  // namespace
 
 Result<FileKind> check_input(const std::string& path, const InputKinds& expected) {
     const Result<FileKind> kind = kind_of_file(path);
+    if (kind.status() == Status::Io && reads_traces_only(expected) && is_trace_kind(path)) {
+        Error error = kind.error();
+        error.remedy = fmt::format("'fase generate {} -o {}.aabt' writes such a trace", path, path);
+        return error;
+    }
     if (!kind || std::find(expected.kinds.begin(), expected.kinds.end(), *kind) != expected.kinds.end()) return kind;
     return Error{Status::Format,
                  path,

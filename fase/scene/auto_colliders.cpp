@@ -20,7 +20,8 @@ namespace {
 constexpr float flat_thickness = 0.1f;  // of a collider for a flat mesh, metres
 constexpr float flat_limit = 1e-3f;     // thinner meshes are flat
 constexpr int max_vertices = 64;
-constexpr float largest = 1e5f;  // limit of shapes
+constexpr float largest = 1e5f;     // limit of shapes
+constexpr double world_size = 1e7;  // limit of positions
 
 /// Visuals that get one collider, and the axes of its box: a point p in the box's frame lies at linear * p.
 struct Part {
@@ -113,10 +114,7 @@ public:
         const auto [entry, is_new] = made_.try_emplace(key_of(part, origin));
         Entry& made = entry->second;
         if (is_new) make(part, origin, made);
-        if (made.shape == no_index) {
-            ++done_.skipped;
-            return false;
-        }
+        if (made.shape == no_index) return skip();
         Collider collider;
         collider.shape = made.shape;
         collider.def.pose = {made.pose.position + origin, made.pose.rotation};
@@ -124,6 +122,12 @@ public:
         ++done_.colliders;
         done_.flat += made.flat ? 1 : 0;
         return true;
+    }
+
+    /// Counts a part that gets no collider.
+    bool skip() {
+        ++done_.skipped;
+        return false;
     }
 
 private:
@@ -208,6 +212,8 @@ bool add_node(const Scene& scene, const SceneryNode& node, ColliderMaker& maker,
     }
     body.visuals.insert(body.visuals.end(), part.visuals.begin(), part.visuals.end());
     if (part.visuals.empty()) return false;
+    const Vec3d at = body.def.position;
+    if (!(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= world_size)) return maker.skip();
     part.linear = part.visuals[0].linear;
     return maker.add(part, body);
 }

@@ -26,7 +26,7 @@ struct AutoColliders {
     std::size_t colliders = 0;
     std::size_t dynamic_bodies = 0, static_bodies = 0;  ///< new ones
     std::size_t flat = 0;                               ///< colliders of flat meshes, 0.1 m thick
-    std::size_t skipped = 0;                            ///< meshes that are points or lines, or beyond 1e5 m
+    std::size_t skipped = 0;  ///< meshes that are points or lines, larger than 1e5 m or beyond 1e7 m
 };
 
 /// Gives every mesh without a collider one:

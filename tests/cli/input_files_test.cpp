@@ -103,6 +103,11 @@ TEST_F(InputFiles, FoldersOfOutputFilesAreCreated) {
     }
 }
 
+TEST_F(InputFiles, TheNameOfAKindInPlaceOfAFileIsExplained) {
+    expect_error_line(run_fase({"pairs", "rain"}), 3, "; 'fase generate rain -o rain.aabt' writes such a trace");
+    expect_error_line(run_fase({"run", "rain"}), 2, "rain: found a kind of trace; expected a scene");
+}
+
 TEST_F(InputFiles, ARefusedCommandCreatesNoFolder) {
     expect_error_line(run_fase({"run", folder / "t.aabt", "--record", folder / "new/r.faserec"}), 2, "found a trace");
     expect_error_line(run_fase({"draw", folder / "s.glb", "-o", folder / "new/x.svg"}), 2, "found a glTF scene");

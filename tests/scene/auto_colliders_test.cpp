@@ -107,13 +107,15 @@ TEST(AutoColliders, MeshesWithoutVolumeAreSkippedAndStayScenery) {
                     {"none", {}, {}},
                     {"far", {{2e6f, 0, 0}, {2e6f, 1, 0}, {2e6f, 0, 1}}, {0, 1, 2}}};
     for (std::uint32_t i = 0; i < 3; ++i) scene.scenery.push_back({i, {}, Mat3::identity(), {}});
+    scene.meshes.push_back({"away", {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {0, 2, 1}});
+    scene.scenery.push_back({3, {2e7f, 0, 0}, Mat3::identity(), {}});
     for (const AutoShape shape : {AutoShape::Hull, AutoShape::Box}) {
         const AutoColliders made = add_colliders(scene, {shape, {}});
         EXPECT_EQ(made.colliders, 0u);
-        EXPECT_EQ(made.skipped, 3u);
+        EXPECT_EQ(made.skipped, 4u);
         EXPECT_TRUE(scene.bodies.empty());
-        EXPECT_EQ(scene.scenery.size(), 3u);
-        EXPECT_EQ(scene.scenery_nodes.size(), 3u);
+        EXPECT_EQ(scene.scenery.size(), 4u);
+        EXPECT_EQ(scene.scenery_nodes.size(), 4u);
     }
 }
 
