@@ -169,7 +169,7 @@ int run_check(const CheckOptions& options) {
     std::vector<checks::Row> rows;
     const Interrupts interrupts;
     {
-        Progress progress(progress_form(true), "case", cases->size());
+        Progress progress("case", cases->size());
         for (std::size_t i = 0; i < cases->size() && Interrupts::signal() == 0; ++i) {
             const Chosen& chosen = (*cases)[i];
             const auto keep_going = [&] {

@@ -77,7 +77,7 @@ int run_query(const QueryOptions& options) {
     if (options.check) reference = reference_answers(*boxes, set);
     std::vector<QueryFigures> rows;
     {
-        Progress progress(progress_form(true), "structure", choices->size());
+        Progress progress("structure", choices->size());
         for (const StructureChoice& choice : *choices) {
             const auto go_on = [&] {
                 if (progress.due()) progress.update(rows.size(), choice.requested);

@@ -191,9 +191,9 @@ Result<Run> prepare(const RunOptions& options, LoadedScene& loaded) {
 }
 
 /// Runs all steps, or until a signal is received.
-Result<void> simulate(Run& run, ProgressForm form) {
+Result<void> simulate(Run& run) {
     RunSummary& summary = run.summary;
-    Progress progress(form, "step", summary.requested_steps);
+    Progress progress("step", summary.requested_steps);
     if (auto written = run.write_frame(); !written) return written;
     for (std::uint64_t i = 0; i < summary.requested_steps && Interrupts::signal() == 0; ++i) {
         const Result<StepReport> report = run.world.step();
@@ -235,7 +235,7 @@ int run_scene(const RunOptions& options) {
     }
     Result<Run> run = prepare(options, *loaded);
     if (!run) return refuse(run.error());
-    const Result<void> simulated = simulate(*run, progress_form(options.json));
+    const Result<void> simulated = simulate(*run);
     const Result<void> recorded = finish_files(*run);
     if (!simulated) return refuse(simulated.error());
     if (!recorded) return refuse(recorded.error());

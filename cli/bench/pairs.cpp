@@ -109,7 +109,7 @@ int run_bench_pairs(const BenchPairsOptions& options) {
         std::optional<Progress> progress;
         const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view name,
                                 std::string_view engine) {
-            if (!progress) progress.emplace(progress_form(true), "frame", total);
+            if (!progress) progress.emplace("frame", total);
             if (progress->due()) progress->update(done, fmt::format("{} {}", name, engine));
             return Interrupts::signal() == 0;
         };

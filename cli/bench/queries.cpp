@@ -87,14 +87,13 @@ int run_bench_queries(const BenchQueriesOptions& options) {
     }
     const Result<std::vector<bench::QueryScene>> scenes = bench::query_scenes(options);
     if (!scenes) return refuse(scenes.error());
-    const ProgressForm form = progress_form(options.json);
     const Interrupts interrupts;
     std::vector<bench::QueryRow> rows;
     for (const bench::QueryScene& scene : *scenes) {
         std::optional<Progress> progress;
         const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view name,
                                 std::string_view contender) {
-            if (!progress) progress.emplace(form, "part", total);
+            if (!progress) progress.emplace("part", total);
             if (progress->due()) progress->update(done, fmt::format("{} {}", name, contender));
             return Interrupts::signal() == 0;
         };

@@ -121,7 +121,6 @@ int run_bench_step(const BenchStepOptions& options) {
     if (!options.csv.empty()) {
         if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
     }
-    const ProgressForm form = progress_form(options.json);
     const Interrupts interrupts;
     std::vector<bench::StepRow> rows;
     std::vector<std::string> scenes;
@@ -136,7 +135,7 @@ int run_bench_step(const BenchStepOptions& options) {
         std::optional<Progress> progress;
         const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view scene,
                                 std::string_view engine) {
-            if (!progress) progress.emplace(form, "step", total);
+            if (!progress) progress.emplace("step", total);
             if (progress->due()) progress->update(done, fmt::format("{} {}", scene, engine));
             return Interrupts::signal() == 0;
         };

@@ -82,7 +82,7 @@ int run_bench_sudden(const BenchSuddenOptions& options) {
     std::string current;
     const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view what) {
         if (current != what) {
-            progress.emplace(progress_form(true), "frame", total);
+            progress.emplace("frame", total);
             current = what;
         }
         if (progress->due()) progress->update(done, what);

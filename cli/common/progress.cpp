@@ -1,4 +1,4 @@
-/// Progress of a long command: a bar on a terminal, a line from time to time elsewhere.
+/// Progress of a long command: a bar on a terminal, nothing elsewhere.
 #include "cli/common/progress.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,6 @@ namespace fase::cli {
 namespace {
 
 constexpr auto bar_interval = std::chrono::milliseconds(100);
-constexpr auto line_interval = std::chrono::seconds(2);
 
 void write_to_stderr(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
@@ -26,37 +25,31 @@ std::size_t terminal_width() {
     return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+bool stderr_is_terminal() {
+    const char* terminal = std::getenv("TERM");
+    return ::isatty(2) == 1 && (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
+}
+
 }  // namespace
 
-ProgressForm progress_form(bool results_only) {
-    const char* terminal = std::getenv("TERM");
-    if (::isatty(2) == 1 && (terminal == nullptr || std::strcmp(terminal, "dumb") != 0)) return ProgressForm::Bar;
-    return results_only ? ProgressForm::None : ProgressForm::Lines;
-}
-
-Progress::Progress(ProgressForm form, std::string_view unit, std::uint64_t total)
-    : form_(form), unit_(unit), total_(std::max<std::uint64_t>(total, 1)), begin_(Clock::now()) {
-    next_ = begin_ + (form == ProgressForm::Bar ? Clock::duration(bar_interval) : Clock::duration(line_interval));
-}
+Progress::Progress(std::string_view unit, std::uint64_t total)
+    : shown_(stderr_is_terminal()),
+      unit_(unit),
+      total_(std::max<std::uint64_t>(total, 1)),
+      begin_(Clock::now()),
+      next_(begin_ + bar_interval) {}
 
 Progress::~Progress() {
     if (drawn_) write_to_stderr("\r\x1b[K");
 }
 
-bool Progress::due() const { return form_ != ProgressForm::None && Clock::now() >= next_; }
+bool Progress::due() const { return shown_ && Clock::now() >= next_; }
 
 void Progress::update(std::uint64_t done, std::string_view note) {
     if (!due()) return;
     const Clock::time_point now = Clock::now();
-    const double seconds = std::chrono::duration<double>(now - begin_).count();
-    if (form_ == ProgressForm::Bar) {
-        next_ = now + bar_interval;
-        draw_bar(done, note, seconds);
-    } else {
-        next_ = now + line_interval;
-        write_to_stderr(fmt::format("{} {} of {} after {:.0f} s{}{}\n", unit_, done, total_, seconds,
-                                    note.empty() ? "" : ", ", note));
-    }
+    next_ = now + bar_interval;
+    draw_bar(done, note, std::chrono::duration<double>(now - begin_).count());
 }
 
 void Progress::draw_bar(std::uint64_t done, std::string_view note, double seconds) {

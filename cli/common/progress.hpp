@@ -1,5 +1,5 @@
 #pragma once
-/// Progress of a long command: a bar on a terminal, a line from time to time elsewhere.
+/// Progress of a long command: a bar on a terminal, nothing elsewhere.
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -7,20 +7,12 @@
 
 namespace fase::cli {
 
-/// How progress is shown.
-enum class ProgressForm {
-    None,
-    Bar,    ///< redrawn in place, up to 10 times a second
-    Lines,  ///< one every 2 s, for logs
-};
-/// Bar when stderr is a terminal; otherwise lines, or nothing if `results_only`.
-[[nodiscard]] ProgressForm progress_form(bool results_only);
-
-/// Shows progress on stderr. update() is cheap enough to call in every step.
+/// Shows progress as a bar on stderr if that is a terminal, up to 10 times a second. update() is cheap enough to call
+/// in every step.
 class Progress {
 public:
     /// @param total the final value of `done` in update(); above 0
-    Progress(ProgressForm form, std::string_view unit, std::uint64_t total);
+    Progress(std::string_view unit, std::uint64_t total);
     /// Clears the bar from the screen.
     ~Progress();
     Progress(const Progress&) = delete;
@@ -33,7 +25,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     void draw_bar(std::uint64_t done, std::string_view note, double seconds);
-    ProgressForm form_;
+    bool shown_;
     std::string unit_;
     std::uint64_t total_;
     bool drawn_ = false;
