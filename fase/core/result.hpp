@@ -61,8 +61,8 @@ public:
     Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
     /// From a result whose value converts implicitly.
     template <class U>
-        requires(!std::same_as<U, T> && std::convertible_to<const U&, T>)
-    Result(const Result<U>& other) : Result(other ? Result(static_cast<T>(*other)) : Result(other.error())) {}
+    requires(!std::same_as<U, T> && std::convertible_to<const U&, T>) Result(const Result<U>& other)
+        : Result(other ? Result(static_cast<T>(*other)) : Result(other.error())) {}
     explicit operator bool() const { return state_.index() == 0; }
     [[nodiscard]] bool has_value() const { return state_.index() == 0; }
     T& operator*() & {

@@ -220,7 +220,7 @@ Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const Co
         reserve_colliders(state, 1);
         reserve_wakes(state, 1);
         const std::uint32_t shared = share_shape(state, shape);
-        disturb(state.bodies, body.index);
+        disturb(state.bodies, state.settings, body.index);
         return make_collider(state, body.index, shared, def, *complete);
     });
 }
@@ -237,7 +237,7 @@ Result<void> World::remove_collider(ColliderId collider) {
         if (!rest) return rest.error();
         reserve_wakes(state, 1);
         reserve_for(state.contacts.removed, state.contacts.removed.size() + 1);
-        disturb(state.bodies, body);
+        disturb(state.bodies, state.settings, body);
         unlink_collider(state, collider.index);
         drop_collider(state, collider.index);
         set_shape(state, body, *rest);

@@ -165,6 +165,10 @@ void gather_constraints(const BodyTable& bodies, float slop, ContactTable& conta
         dynamics::Constraint constraint{c.first_manifold, index, c.body_a, c.body_b};
         if (role[c.body_a] != left_out && role[c.body_b] != left_out)
             constraint.moves = dynamics::moves_of(role[c.body_a] == moves, role[c.body_b] == moves);
+        if (constraint.moves == dynamics::Moves::A || constraint.moves == dynamics::Moves::B) {
+            const std::uint32_t other = constraint.moves == dynamics::Moves::A ? c.body_b : c.body_a;
+            constraint.on_sleeper = bodies.traits[other].kind == BodyKind::Dynamic;
+        }
         constraint.began = !c.touching;
         constraint.touches = c.touching || c.nearest <= slop;
         for (std::size_t i = 0; i < c.manifolds; ++i, ++constraint.index) {

@@ -96,7 +96,8 @@ void measure_islands(const Settings& settings, const BodyTable& bodies, SleepLis
         const bool slow = length_squared(motion.linear_velocity) < linear * linear &&
                           length_squared(motion.angular_velocity) < angular * angular;
         ++activity.active_bodies;
-        activity.must_stay_awake |= !slow || !traits.can_sleep || traits.kind != BodyKind::Dynamic;
+        activity.must_stay_awake |=
+            !slow || !traits.can_sleep || traits.kind != BodyKind::Dynamic || motion.sleep_time < 0;
     }
 }
 

@@ -8,14 +8,14 @@ namespace fase {
 using broad::Pair;
 using dynamics::Contact;
 
-void disturb_around_edits(BodyTable& bodies, const ColliderTable& colliders, const BroadPhase& broad_phase,
-                          const ContactTable& contacts) {
+void disturb_around_edits(const Settings& settings, BodyTable& bodies, const ColliderTable& colliders,
+                          const BroadPhase& broad_phase, const ContactTable& contacts) {
     for (const std::uint32_t edit : broad_phase.edited_colliders)
         contacts.graph.for_each_of(edit, [&](std::uint32_t index) {
             const Contact& c = contacts[index];
             if (c.sensor || c.manifolds == 0) return;
             for (const auto& [collider, generation, body] : sides_of(c))
-                if (is_current(colliders, collider, generation)) disturb(bodies, body);
+                if (is_current(colliders, collider, generation)) disturb(bodies, settings, body);
         });
 }
 

@@ -74,8 +74,8 @@ Result<void> World::set_settings(const Settings& settings) {
         if (disturbs) reserve_wakes(*state_, state_->bodies.asleep.bodies.size());
         state_->settings = settings;
         if (!disturbs) return {};
-        for (const std::uint32_t body : state_->bodies.asleep.bodies) disturb(state_->bodies, body);
-        for (const std::uint32_t body : state_->bodies.awake) disturb(state_->bodies, body);
+        for (const std::uint32_t body : state_->bodies.asleep.bodies) disturb(state_->bodies, state_->settings, body);
+        for (const std::uint32_t body : state_->bodies.awake) disturb(state_->bodies, state_->settings, body);
         return {};
     });
 }
@@ -93,7 +93,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
         motion.position = placed.position;
         motion.rotation = normalized(placed.rotation);
         update_boxes(*state_, body.index);
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -109,7 +109,7 @@ Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
         dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -201,7 +201,7 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
         set_shape(*state_, body.index, *shape);
         if (!(frame_before == traits.principal))
             update_boxes(*state_, body.index);  // the shapes moved, if only by rounding
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -214,7 +214,7 @@ Result<void> World::set_damping(BodyId body, float linear, float angular) {
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].linear_damping = linear;
         state_->bodies.traits[body.index].angular_damping = angular;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -226,7 +226,7 @@ Result<void> World::set_gravity_scale(BodyId body, float scale) {
             return r;
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].gravity_scale = scale;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -236,7 +236,7 @@ Result<void> World::set_locks(BodyId body, AxisLocks locks) {
         if (!contains(body)) return stale_id("World::set_locks");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].locks = bits_of(locks);
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -246,7 +246,7 @@ Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
         if (!contains(body)) return stale_id("World::set_can_sleep");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].can_sleep = can_sleep;
-        if (!can_sleep) disturb(state_->bodies, body.index);
+        if (!can_sleep) disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -255,7 +255,7 @@ Result<void> World::wake(BodyId body) {
     return guarded(*state_, "World::wake", [&]() -> Result<void> {
         if (!contains(body)) return stale_id("World::wake");
         reserve_wakes(*state_, 1);
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -277,9 +277,9 @@ Result<void> World::set_material(ColliderId collider, const Material& material) 
                     return;  // its collider was removed: the next step ends it
             update_materials(state.colliders, state.contacts, index);
             if (!c.sensor && c.touching)
-                for (const auto& side : sides_of(c)) disturb(state.bodies, side.body);
+                for (const auto& side : sides_of(c)) disturb(state.bodies, state.settings, side.body);
         });
-        disturb(state.bodies, state.colliders[collider.index].body);
+        disturb(state.bodies, state.settings, state.colliders[collider.index].body);
         // The order of a collider's contacts is not the same after a restore; the list is part of the hash.
         std::sort(state.bodies.to_wake.begin() + static_cast<std::ptrdiff_t>(wakes_before), state.bodies.to_wake.end());
         return {};
@@ -292,7 +292,7 @@ Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter
         reserve_wakes(*state_, 1);
         state_->colliders[collider.index].filter = filter;
         update_box(*state_, collider.index);
-        disturb(state_->bodies, state_->colliders[collider.index].body);
+        disturb(state_->bodies, state_->settings, state_->colliders[collider.index].body);
         return {};
     });
 }
@@ -304,8 +304,8 @@ Result<void> World::exclude_pair(BodyId a, BodyId b) {
         reserve_wakes(*state_, 2);
         if (!state_->bodies.exclusions.add(a.index, b.index)) return {};
         update_pairs_between(*state_, a.index, b.index);
-        disturb(state_->bodies, a.index);
-        disturb(state_->bodies, b.index);
+        disturb(state_->bodies, state_->settings, a.index);
+        disturb(state_->bodies, state_->settings, b.index);
         return {};
     });
 }
@@ -316,8 +316,8 @@ Result<void> World::include_pair(BodyId a, BodyId b) {
         reserve_wakes(*state_, 2);
         if (!state_->bodies.exclusions.remove(a.index, b.index)) return {};
         update_pairs_between(*state_, a.index, b.index);
-        disturb(state_->bodies, a.index);
-        disturb(state_->bodies, b.index);
+        disturb(state_->bodies, state_->settings, a.index);
+        disturb(state_->bodies, state_->settings, b.index);
         return {};
     });
 }
@@ -344,7 +344,7 @@ Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
         if (auto checked = check_forces(sum, "World::apply_force"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -360,7 +360,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
         if (auto checked = check_forces(sum, "World::apply_torque"); !checked) return checked;
         reserve_wakes(*state_, 1);
         state_->bodies.forces[body.index] = sum;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -390,7 +390,7 @@ Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d poi
         reserve_wakes(*state_, 1);
         motion.linear_velocity = linear;
         motion.angular_velocity = angular;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }
@@ -407,7 +407,7 @@ Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds
         if (auto checked = check_velocity({}, angular, "World::apply_angular_impulse: "); !checked) return checked;
         reserve_wakes(*state_, 1);
         motion.angular_velocity = angular;
-        disturb(state_->bodies, body.index);
+        disturb(state_->bodies, state_->settings, body.index);
         return {};
     });
 }

@@ -108,7 +108,7 @@ void finish(const StepContext& context, const dynamics::Solver& solver, const Co
     const float seconds = context.seconds;
     BodyTable& bodies = state.bodies;
     mark_held(constraints, bodies);
-    const float linear = settings.sleep_linear_speed, angular = settings.sleep_angular_speed;
+    const float linear = settings.sleep_linear_speed * seconds, angular = settings.sleep_angular_speed * seconds;
     const float distance = settings.sleep_distance;
     bodies.faults.assign(bodies.awake.size(), 0);
     parallel_ranges(context.tasks, bodies.awake.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -129,17 +129,19 @@ void finish(const StepContext& context, const dynamics::Solver& solver, const Co
                 bodies.faults[i] = left ? 2 : 1;
                 continue;
             }
-            next.drift += Vec3{row.moved[0], row.moved[1], row.moved[2]};
+            const Vec3 path{row.moved[0], row.moved[1], row.moved[2]};
+            const Vec3 angle{row.rotated[0], row.rotated[1], row.rotated[2]};
+            next.drift += path;
             // Use the actual displacement, not the velocity: push-out moves bodies without changing their velocity.
             next.turn += turned.vector() * 2.0f;
             // A slow, steady motion is not rest; vibration about one place is.
             const bool stays = length(next.drift) + traits.reach * length(next.turn) < distance;
-            const bool slow = length_squared(next.linear_velocity) < linear * linear &&
-                              length_squared(next.angular_velocity) < angular * angular;
+            // Mean speeds: that of a wedged stone at the end of a step is not how fast it moves.
+            const bool slow = length_squared(path) < linear * linear && length_squared(angle) < angular * angular;
             const bool rests = traits.kind == BodyKind::Dynamic
                                    ? slow && stays && traits.can_sleep && !falls(bodies, settings.gravity, body)
                                    : !is_moving(next);
-            next.sleep_time = rests ? next.sleep_time + seconds : 0;
+            next.sleep_time = rests || next.sleep_time < 0 ? next.sleep_time + seconds : 0;
             // The net motion is measured within each span of time_to_sleep, not since the body came to rest.
             const float span = settings.time_to_sleep;
             const bool spans_end =

@@ -132,7 +132,8 @@ void update_active(const MotionStates& state, std::span<const Pair> found) {
 }
 
 /// Disturbs what an added or moved collider overlaps, unless it was added asleep.
-void disturb_overlapped(BodyTable& bodies, const ColliderTable& colliders, const BroadPhase& broad_phase) {
+void disturb_overlapped(const Settings& settings, BodyTable& bodies, const ColliderTable& colliders,
+                        const BroadPhase& broad_phase) {
     const std::vector<std::uint8_t>& changes = broad_phase.changes;
     for (const Pair pair : broad_phase.candidates)
         for (const auto& [obstacle, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}}) {
@@ -140,7 +141,7 @@ void disturb_overlapped(BodyTable& bodies, const ColliderTable& colliders, const
             const bool added_asleep = traits.kind == BodyKind::Dynamic && traits.motion_state == MotionState::Asleep;
             if ((changes[obstacle] & edited) && !(changes[other] & edited) && !added_asleep &&
                 !colliders[obstacle].sensor && !colliders[other].sensor)
-                disturb(bodies, colliders[other].body);
+                disturb(bodies, settings, colliders[other].body);
         }
 }
 
@@ -185,7 +186,7 @@ void track_pairs(const StepContext& context, const MotionStates& state, Moved& m
     broad_phase.sets.commit(context.tasks);
     const bool edits = broad_phase.removed_any || !broad_phase.edited_colliders.empty();
     if (edits) {
-        disturb_around_edits(state.bodies, colliders, broad_phase, state.contacts);
+        disturb_around_edits(context.settings, state.bodies, colliders, broad_phase, state.contacts);
         wake_requested_islands(state, context.settings);
         for (const MotionState changed : {MotionState::Awake, MotionState::Asleep})
             broad_phase.sets.of(changed).commit();
@@ -193,7 +194,7 @@ void track_pairs(const StepContext& context, const MotionStates& state, Moved& m
     gather_queries(state.bodies, colliders, broad_phase, moved);
     if (!broad_phase.query_boxes.empty() || edits) {
         find_candidates(context, state.bodies, colliders, moved, broad_phase);
-        disturb_overlapped(state.bodies, colliders, broad_phase);
+        disturb_overlapped(context.settings, state.bodies, colliders, broad_phase);
         wake_requested_islands(state, context.settings);
         update_pairs(context, state);
     }

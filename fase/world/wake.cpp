@@ -8,18 +8,28 @@ namespace fase {
 using dynamics::BodyTraits;
 using dynamics::Contact;
 
+namespace {
+
+/// Begins the rest of a body anew; not sooner than it may begin after an edit.
+void restart_rest(BodyTable& bodies, std::uint32_t body) {
+    float& rest = bodies.motion[body].sleep_time;
+    rest = std::min(rest, 0.0f);
+}
+
+}  // namespace
+
 void request_wake(BodyTable& bodies, std::uint32_t body) {
     const BodyTraits& traits = bodies.traits[body];
     if (traits.motion_state != MotionState::Asleep || traits.quarantined) return;
     bodies.to_wake.push_back(body);
 }
 
-void disturb(BodyTable& bodies, std::uint32_t body) {
+void disturb(BodyTable& bodies, const Settings& settings, std::uint32_t body) {
     dynamics::BodyMotion& motion = bodies.motion[body];
     const BodyKind kind = bodies.traits[body].kind;
     // A kinematic body without velocity rests whatever happens to it.
     if (kind == BodyKind::Static || (kind == BodyKind::Kinematic && !is_moving(motion))) return;
-    motion.sleep_time = 0;
+    motion.sleep_time = -settings.time_to_sleep;
     motion.drift = motion.turn = {};
     request_wake(bodies, body);
 }
@@ -50,6 +60,7 @@ void wake_requested_islands(const MotionStates& state, const Settings& settings)
     std::vector<std::uint32_t> islands, bodies;
     for (const std::uint32_t body : state.bodies.to_wake)
         if (state.bodies.asleep.holds(body)) islands.push_back(state.bodies.asleep.island(body));
+    for (const std::uint32_t body : state.bodies.to_wake) restart_rest(state.bodies, body);
     state.bodies.to_wake.clear();
     std::sort(islands.begin(), islands.end());
     islands.erase(std::unique(islands.begin(), islands.end()), islands.end());
@@ -61,7 +72,10 @@ void wake_requested_islands(const MotionStates& state, const Settings& settings)
     state.bodies.marks.resize(state.bodies.traits.size(), 0);
     for (const std::uint32_t body : bodies) {
         state.bodies.marks[body] = 1;
-        state.bodies.motion[body].sleep_time = 0;
+        // The others still rest. For another time to sleep they stay awake, so that what was changed may move them.
+        dynamics::BodyMotion& motion = state.bodies.motion[body];
+        motion.sleep_time = std::min(motion.sleep_time, settings.time_to_sleep);
+        motion.drift = motion.turn = {};
     }
     add_carried(state.touching(), settings.gravity, bodies, state.bodies.marks);
     for (const std::uint32_t body : bodies) state.bodies.marks[body] = 0;
@@ -93,7 +107,7 @@ void wake_struck(const MotionStates& state, const Settings& settings, std::uint3
         const BodyTraits& traits = state.bodies.traits[b];
         if (traits.motion_state == MotionState::Asleep && !traits.quarantined) bodies.push_back(b);
     }
-    for (const std::uint32_t b : bodies) state.bodies.motion[b].sleep_time = 0;
+    for (const std::uint32_t b : bodies) restart_rest(state.bodies, b);
     std::sort(bodies.begin(), bodies.end());
     move_to_awake(state, bodies);
 }

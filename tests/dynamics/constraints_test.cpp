@@ -32,6 +32,15 @@ void expect_consistent(const ConstraintColours& colours, const std::vector<Edge>
         EXPECT_EQ(colours.used(body), static_cast<int>(taken[body].size()));
 }
 
+void update(ConstraintColours& colours, Edge& e, Moves moves, bool on_sleeper = false) {
+    Constraint constraint{0, 0, e.a, e.b};
+    constraint.moves = moves;
+    constraint.on_sleeper = on_sleeper && moves != Moves::Both && moves != Moves::Neither;
+    colours.update(e.colour, constraint);
+    const bool has_colour = e.colour.number < ConstraintColours::count;
+    EXPECT_EQ(has_colour && constraint.on_sleeper, has_colour && e.colour.number >= ConstraintColours::on_sleeper);
+}
+
 TEST(ConstraintColours, random_lives_keep_one_colour_per_body_and_free_those_that_end) {
     constexpr std::uint32_t bodies = 12;
     bool overflowed = false;
@@ -46,16 +55,19 @@ TEST(ConstraintColours, random_lives_keep_one_colour_per_body_and_free_those_tha
                        static_cast<std::uint32_t>(random.below(bodies)),
                        {}};
                 if (e.a == e.b) continue;
-                colours.update(e.colour, e.a, e.b, static_cast<Moves>(1 + random.below(3)));
+                update(colours, e, static_cast<Moves>(1 + random.below(3)), random.below(2) == 0);
                 edges.push_back(e);
             }
             Edge& e = edges[random.below(edges.size())];
             const ConstraintColour before = e.colour;
             const auto moves = static_cast<Moves>(random.below(4));
-            colours.update(e.colour, e.a, e.b, moves);
+            const bool on_sleeper = random.below(2) == 0, one = moves == Moves::A || moves == Moves::B;
+            update(colours, e, moves, on_sleeper);
             EXPECT_EQ(e.colour.moves, moves);
             EXPECT_EQ(e.colour.number == ConstraintColour::none, moves == Moves::Neither);
-            if (before.moves == moves && before.number < ConstraintColours::count) {
+            const bool was_on_sleeper = before.number >= ConstraintColours::on_sleeper;
+            if (before.moves == moves && before.number < ConstraintColours::count &&
+                (!one || was_on_sleeper == on_sleeper)) {
                 EXPECT_EQ(e.colour.number, before.number) << "a colour that still suits is kept";
             }
             overflowed |= e.colour.number == ConstraintColour::overflow;
@@ -95,12 +107,16 @@ TEST(ConstraintColours, contradictory_colours_are_refused) {
 TEST(ConstraintColours, a_hub_gets_a_colour_when_one_becomes_free) {
     ConstraintColours colours;
     colours.resize(100);
-    std::vector<ConstraintColour> all(ConstraintColours::two_sided + 1);
-    for (std::uint32_t i = 0; i < all.size(); ++i) colours.update(all[i], 0, i + 1, Moves::Both);
-    EXPECT_EQ(all.back().number, ConstraintColour::overflow);
-    colours.release(all[7], 0, 8);
-    colours.update(all.back(), 0, static_cast<std::uint32_t>(all.size()), Moves::Both);
-    EXPECT_EQ(all.back().number, 7);
+    std::vector<Edge> all;
+    for (std::uint32_t i = 0; i <= ConstraintColours::two_sided; ++i) {
+        all.push_back({0, i + 1, {}});
+        update(colours, all.back(), Moves::Both);
+    }
+    EXPECT_EQ(all.back().colour.number, ConstraintColour::overflow);
+    const int freed = all[7].colour.number;
+    colours.release(all[7].colour, 0, 8);
+    update(colours, all.back(), Moves::Both);
+    EXPECT_EQ(all.back().colour.number, freed);
 }
 
 TEST(ManifoldPool, random_lives_keep_the_manifolds_of_each_contact_together) {

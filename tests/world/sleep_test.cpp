@@ -366,6 +366,92 @@ TEST(Sleep, a_heap_in_which_one_stone_is_pushed_sleeps_again_and_wakes_no_more_t
     EXPECT_LT(woken, 900u);
     EXPECT_FALSE(state(world, box).awake);
 }
+
+/// Something to rock on: adds bodies, and returns where the stone stands.
+struct Building {
+    const char* name;
+    Vec3d (*build)(World&);
+    std::uint32_t awake;  ///< bodies that may stay awake below the stone, and it
+};
+Vec3d build_pyramid(World& world) {
+    for (int row = 0; row < 10; ++row)
+        for (int i = 0; i < 10 - row; ++i) add(world, {.position = {i - 0.5 * (9 - row), 0.5 + row, 0}}, Box{});
+    return {0, 10.3, 0};
+}
+Vec3d build_wall(World& world) {
+    for (int row = 0; row < 6; ++row)
+        for (int i = 0; i < 12; ++i) add(world, {.position = {i + 0.5 * (row % 2) - 5.5, 0.5 + row, 0}}, Box{});
+    return {0, 6.3, 0};
+}
+Vec3d build_block(World& world) {
+    for (int layer = 0; layer < 4; ++layer)
+        for (int i = 0; i < 64; ++i) add(world, {.position = {i % 8 * 1.0, 0.5 + layer, i / 8 * 1.0}}, Box{});
+    return {4, 4.3, 4};
+}
+Vec3d build_plank_tower(World& world) {
+    for (int layer = 0; layer < 20; ++layer)
+        for (const double aside : {-1.2, 0.0, 1.2}) {
+            const double y = 0.1 + 0.2 * layer;
+            const bool turned = layer % 2 == 1;
+            add(world, {.position = turned ? Vec3d{aside, y, 0} : Vec3d{0, y, aside}},
+                turned ? Box{{0.3f, 0.1f, 1.5f}} : Box{{1.5f, 0.1f, 0.3f}});
+        }
+    return {0, 4.3, 0};
+}
+TEST(Sleep, a_rocking_stone_keeps_awake_only_what_it_may_move) {
+    for (const Building& building : {Building{"pyramid", build_pyramid, 2}, Building{"wall", build_wall, 2},
+                                     Building{"block", build_block, 2}, Building{"planks", build_plank_tower, 8}}) {
+        World world = make_world();
+        add_ground(world);
+        const BodyId stone = add(world, {.position = building.build(world)}, Box{{0.3f, 0.3f, 0.3f}});
+        std::uint32_t awake = 0;
+        float turns = 0;
+        for (int i = 0; i < 600; ++i) {
+            if (i % 30 < 5) opened(world.apply_torque(stone, {0, 0, i / 30 % 2 == 0 ? 900.0f : -900.0f}));
+            ASSERT_TRUE(world.step());
+            if (i < 300) continue;
+            awake = std::max(awake, world.last_report().awake);
+            turns = std::max(turns, length(state(world, stone).angular_velocity));
+        }
+        EXPECT_LE(awake, building.awake) << building.name;
+        EXPECT_GT(turns, 0.05f) << building.name;
+    }
+}
+TEST(Sleep, a_row_of_sleepers_gives_way_to_a_steady_push_each_time) {
+    World world = make_world();
+    add_ground(world, {.friction = 0});
+    std::vector<BodyId> row;
+    for (int i = 0; i < 4; ++i)
+        row.push_back(add(world, {.position = {1.0 * i, 0.5, 0}}, Box{}, {.material = {.friction = 0}}));
+    for (int time = 0; time < 4; ++time) {
+        run(world, 3);
+        ASSERT_EQ(world.last_report().awake, 0u);
+        const double before = state(world, row.back()).pose.position.x;
+        for (int i = 0; i < 90; ++i) {
+            opened(world.apply_force(row.front(), {1200, 0, 0}));  // 0.3 m/s² for the row
+            ASSERT_TRUE(world.step());
+        }
+        EXPECT_NEAR(state(world, row.back()).pose.position.x - before, 0.5 * 0.3 * 1.5 * 1.5, 0.05) << time;
+        for (const BodyId box : row) opened(world.set_velocity(box, {}, {}));
+    }
+}
+TEST(Sleep, a_body_does_not_move_when_its_support_falls_asleep) {
+    World world = make_world();
+    add_ground(world);
+    std::vector<BodyId> stack;
+    for (int i = 0; i < 12; ++i) stack.push_back(add(world, {.position = {0, 0.5 + i, 0}, .can_sleep = i < 11}, Box{}));
+    std::vector<double> before(stack.size());
+    double moved = 0;
+    for (int i = 0; i < 150; ++i) {
+        for (std::size_t k = 0; k < stack.size(); ++k) before[k] = state(world, stack[k]).pose.position.y;
+        ASSERT_TRUE(world.step());
+        if (i < 55) continue;  // the stack settles
+        for (std::size_t k = 0; k < stack.size(); ++k)
+            moved = std::max(moved, std::abs(state(world, stack[k]).pose.position.y - before[k]));
+    }
+    EXPECT_LT(world.last_report().awake, 12u);
+    EXPECT_LT(moved, 1e-4);
+}
 TEST(Sleep, a_load_taken_off_a_seesaw_lets_its_other_end_fall) {
     World world = make_world();
     add_ground(world);

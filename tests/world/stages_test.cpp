@@ -116,7 +116,7 @@ TEST(Stages, events_tell_what_the_results_of_constraints_say) {
     constraints.results = {{.nearest = 0, .approach = 2, .impulse = 30, .pushes = true, .hit_offset_a = Vec3{0, 1, 0}}};
     Events events;
     publish_events(settings, colliders, constraints, bodies, contacts, events);
-    const ContactEvent pair{*colliders.ids.id_at(0), *colliders.ids.id_at(1)};
+    const ContactEvent pair{event_collider(bodies, colliders, 0), event_collider(bodies, colliders, 1)};
     EXPECT_EQ(events.contacts_begun, std::vector{pair});
     ASSERT_EQ(events.hits.size(), 1u);
     EXPECT_EQ(events.hits[0].point, (Vec3d{0, 1, 0}));

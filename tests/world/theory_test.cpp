@@ -1,5 +1,7 @@
 // What a world does, held against the formulas of mechanics.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/world/worlds.hpp"
 
@@ -230,6 +232,29 @@ TEST(Theory, a_rolled_pile_never_gains_energy) {
         ASSERT_LT(now, bound * 1.01) << "step " << i;
         bound = std::min(bound, std::max(now, bound * 0.99));
     }
+}
+
+TEST(Theory, columns_that_touch_do_not_wedge) {
+    Settings settings;
+    settings.sleep = false;
+    World world = make_world(settings);
+    add_ground(world);
+    constexpr int base = 40;
+    std::vector<std::pair<BodyId, double>> boxes;  // with their x
+    for (int row = 0; row < base; ++row)
+        for (int i = 0; i < base - row; ++i) {
+            const double x = i - 0.5 * (base - row - 1);
+            boxes.emplace_back(add(world, {.position = {x, 0.5 + row, 0}}, Box{}), x);
+        }
+    for (int i = 0; i < 280; ++i) ASSERT_TRUE(world.step());
+    double yaw = 0, aside = 0;
+    for (const auto& [box, x] : boxes) {
+        const Pose pose = state(world, box).pose;
+        yaw = std::max(yaw, 2 * std::abs(static_cast<double>(pose.rotation.y)));
+        aside = std::max(aside, std::abs(pose.position.x - x));
+    }
+    EXPECT_LT(yaw, 2e-4);  // radians
+    EXPECT_LT(aside, 2e-3);
 }
 
 }  // namespace

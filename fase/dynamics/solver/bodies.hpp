@@ -39,7 +39,9 @@ struct BodyMotion {
     Quat rotation;
     Vec3 linear_velocity;
     Vec3 angular_velocity;
-    float sleep_time = 0;             ///< seconds below the sleep speeds and within Settings::sleep_distance
+    /// Seconds of rest: below the sleep speeds and within Settings::sleep_distance. Negative after an edit of the body:
+    /// minus the seconds until its rest may begin.
+    float sleep_time = 0;
     Vec3 drift;                       ///< metres moved since the current sleep span began
     Vec3 turn;                        ///< radians rotated since then
     std::uint32_t island = no_index;  ///< smallest body index of its island in the last step

@@ -29,8 +29,9 @@ struct Constraint {
     std::uint32_t body_a = 0, body_b = 0;
     ConstraintKind kind = ConstraintKind::Contact;
     Moves moves = Moves::Neither;
-    bool began = true;     ///< the bodies did not touch in the last step
-    bool touches = false;  ///< at the beginning of the step, the bodies touch or nearly do: one island
+    bool on_sleeper = false;  ///< it moves one body, and the other one sleeps
+    bool began = true;        ///< the bodies did not touch in the last step
+    bool touches = false;     ///< at the beginning of the step, the bodies touch or nearly do: one island
 };
 
 }  // namespace fase::dynamics

@@ -296,6 +296,7 @@ template <class V, Sides sides> void warm_start_lanes(ContactBlock& k, int s, co
 template <class V> struct Points {
     V impulse[4], x[4], y[4], mass[4], bias[4], scale[4], decay[4];
     V known, hardening;  // see NormalSolver::borne()
+    V max_impulse[4];    // of the relax pass
 
     template <bool biased>
     FASE_INLINE void load(const ContactBlock& k, int s, const PassInput& in, const Affine<V>& separation_change,
@@ -304,7 +305,7 @@ template <class V> struct Points {
         const V bias_rate = V::set(in.softness.mass_scale * in.softness.bias_rate);
         const V mass_scale = V::set(in.softness.mass_scale), impulse_scale = V::set(in.softness.impulse_scale);
         const V fastest_out = V::set(-in.push_out_speed);
-        const V impact_speed = V::set(in.impact_speed), far_away = V::set(1e9f);
+        const V impact_speed = V::set(in.impact_speed), far_away = V::set(1e9f), no_limit = V::set(3e38f);
         const V restitution = V::load(k.restitution + s);
         known = V::load(k.known_load + s);
         hardening = V::set(1.0f / in.softness.mass_scale);
@@ -325,6 +326,9 @@ template <class V> struct Points {
                 bias[i] = max_of(separation, zero) * rate + select_greater(restitution, zero, waits, zero);
                 scale[i] = one;
                 decay[i] = zero;
+                // The pass takes away what the spring added. Only a contact that is known to bear weight, or bounces,
+                // may get more: else neighbours that squeeze each other wedge ever tighter, and walls buckle.
+                max_impulse[i] = select_greater(known + restitution, zero, no_limit, impulse[i]);
             }
         }
     }
@@ -342,10 +346,11 @@ template <class V, bool biased> struct NormalSolver {
     FASE_INLINE V error(int i) const {
         return points.scale[i] * velocity.at(points.x[i], points.y[i]) + points.bias[i];
     }
-    /// Sets the impulse of point i to `target`, clamped to 0 or more, and updates the normal velocity.
+    /// Sets the impulse of point i to `target`, clamped to what it may be, and updates the normal velocity.
     FASE_INLINE void set_impulse(int i, V target) {
         const V zero = V::set(0.0f);
-        const V next = select_greater(points.mass[i], zero, max_of(target, zero), zero);
+        V next = select_greater(points.mass[i], zero, max_of(target, zero), zero);
+        if constexpr (!biased) next = min_of(next, points.max_impulse[i]);
         const V d = next - points.impulse[i], dx = points.x[i] * d, dy = points.y[i] * d;
         points.impulse[i] = next;
         sum = sum + d;

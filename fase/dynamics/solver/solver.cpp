@@ -18,6 +18,10 @@ constexpr int overflow_two_sided = ConstraintColours::count, overflow_one_sided 
 // The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
 // at an eighth, pyramids vibrate.
 constexpr float max_frequency_share = 0.1f;
+// A sleeper is held, so the effective mass of its contact with an equal body is twice that of two awake ones. This
+// share of frequency and damping ratio, the root of 1/2, keeps stiffness and damping of the contact as they were: what
+// lies beside a body that falls asleep or wakes does not jump.
+constexpr float sleeper_share = 0.70710678f;
 
 /// Computes the world inverse inertia R diag(inverse moments) Rᵀ of a body. A locked axis does not rotate: its angular
 /// momentum is left out by a Schur complement, so the other axes respond as if held there.
@@ -132,8 +136,9 @@ void Solver::prepare_blocks() {
     const auto unused_row = static_cast<std::uint32_t>(rows_.size() - 1);
     for (int i = 0; i < ConstraintColours::count; ++i) {
         Colour& colour = colours_[i];
-        colour.on_static = i >= ConstraintColours::two_sided;
-        colour.sides = colour.on_static ? Sides::OnlyB : Sides::Both;
+        colour.on_static = i >= ConstraintColours::two_sided && i < ConstraintColours::on_sleeper;
+        colour.on_sleeper = i >= ConstraintColours::on_sleeper;
+        colour.sides = i >= ConstraintColours::two_sided ? Sides::OnlyB : Sides::Both;
         colour.blocks.resize((colour.contacts + block_lanes - 1) / block_lanes);
         if (colour.contacts == 0) continue;
         ++counts_.colours;
@@ -168,7 +173,7 @@ void Solver::load_constraints(const ConstraintInput& in, ConstraintColours& colo
             detail::prefetch(manifolds[in.constraints[i + prefetch_ahead].index].colour);
         const Constraint& constraint = in.constraints[i];
         ContactManifold& manifold = manifolds[constraint.index];
-        colours.update(manifold.colour, constraint.body_a, constraint.body_b, constraint.moves);
+        colours.update(manifold.colour, constraint);
         slots_[i] = {};
         if (constraint.moves == Moves::Neither) continue;
         slots_[i] = place(constraint, manifold.colour, colours);
@@ -196,6 +201,8 @@ void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& t
                     settings.restitution_threshold};
     PassInput on_static = input;  // contacts with static and kinematic bodies are twice as stiff
     on_static.softness = make_softness(2 * frequency, 0.5f * settings.contact_damping_ratio, h);
+    PassInput on_sleeper = input;
+    on_sleeper.softness = make_softness(sleeper_share * frequency, sleeper_share * settings.contact_damping_ratio, h);
     const auto run = reference ? run_pass_reference : run_pass;
     for (const int overflow : {overflow_two_sided, overflow_one_sided}) {
         Colour& colour = colours_[overflow];
@@ -205,7 +212,7 @@ void Solver::run_passes(Pass pass, const SolverSettings& settings, TaskRunner& t
     for (int i = 0; i < ConstraintColours::count; ++i) {
         Colour& colour = colours_[i];
         if (pass == Pass::FindImpacts && !colour.restitution) continue;
-        const PassInput& pass_input = colour.on_static ? on_static : input;
+        const PassInput& pass_input = colour.on_static ? on_static : colour.on_sleeper ? on_sleeper : input;
         parallel_ranges(tasks, colour.blocks.size(), block_grain, [&](std::size_t begin, std::size_t end) {
             run(pass, colour.blocks.data() + begin, end - begin, colour.sides, pass_input);
         });

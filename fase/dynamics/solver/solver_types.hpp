@@ -81,6 +81,7 @@ struct Colour {
     std::uint32_t contacts = 0;
     Sides sides = Sides::Both;
     bool on_static = false;    ///< one body of each contact is static or kinematic
+    bool on_sleeper = false;   ///< one body of each contact sleeps
     bool restitution = false;  ///< a contact may bounce
 };
 

@@ -92,9 +92,8 @@ bool colliders_are_right(const WorldState& s) {
 
 bool motion_is_right(const WorldState& s, const BodyMotion& m, const dynamics::BodyForces& f) {
     return is_in_world(m.position) && is_unit(m.rotation) && is_finite(m.linear_velocity) &&
-           is_finite(m.angular_velocity) && std::isfinite(m.sleep_time) && m.sleep_time >= 0 && is_finite(m.drift) &&
-           is_finite(m.turn) && (m.island == no_index || m.island < s.bodies.motion.size()) && is_finite(f.force) &&
-           is_finite(f.torque);
+           is_finite(m.angular_velocity) && std::isfinite(m.sleep_time) && is_finite(m.drift) && is_finite(m.turn) &&
+           (m.island == no_index || m.island < s.bodies.motion.size()) && is_finite(f.force) && is_finite(f.torque);
 }
 
 bool body_is_right(const WorldState& s, std::uint32_t body) {

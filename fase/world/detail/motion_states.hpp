@@ -52,7 +52,7 @@ void mark_edited(BroadPhase& broad_phase, QueryTrees& query, std::uint32_t colli
 void request_wake(BodyTable& bodies, std::uint32_t body);
 /// Call when something may have changed what moves a body: its rest begins anew, and it wakes. Does nothing for static
 /// bodies, and for kinematic ones without velocity. Edits call reserve_wakes() before.
-void disturb(BodyTable& bodies, std::uint32_t body);
+void disturb(BodyTable& bodies, const Settings& settings, std::uint32_t body);
 /// Wakes the islands of all bodies in BodyTable::to_wake, and what they carry. Their rest begins anew.
 void wake_requested_islands(const MotionStates& state, const Settings& settings);
 /// Wakes the sleeping bodies behind one that is struck with `momentum` (kg m/s), as far as the blow may move them.

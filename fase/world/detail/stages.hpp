@@ -34,8 +34,8 @@ void refresh_boxes(const StepContext& context, const ColliderTable& colliders, B
 /// awake boxes are queried.
 void track_pairs(const StepContext& context, const MotionStates& state, Moved& moved);
 /// Disturbs the bodies that touch a collider that was removed, moved or changed: a part of track_pairs().
-void disturb_around_edits(BodyTable& bodies, const ColliderTable& colliders, const BroadPhase& broad_phase,
-                          const ContactTable& contacts);
+void disturb_around_edits(const Settings& settings, BodyTable& bodies, const ColliderTable& colliders,
+                          const BroadPhase& broad_phase, const ContactTable& contacts);
 /// Ends the resting pairs of edited colliders whose boxes parted, adds those of `found` that are not in the list, and
 /// has all of them collided in this step: a part of track_pairs(). `found`: ascending, none twice. O(pairs of edited
 /// colliders).
