@@ -11,11 +11,13 @@ import type { Frame } from "./model";
 import { Playback, speeds } from "./playback";
 import type { Recording } from "./recording";
 import { type Colouring, colourings, legendOf } from "./scene/colours";
-import { Quality } from "./scene/quality";
+import { Quality, savesNothing } from "./scene/quality";
 import { View } from "./scene/view";
 
 const prepareAhead = 40;
 const hashPauseMs = 400;
+/** how long a motion must have ended before a picture without savings is drawn, which may be slow */
+const settleMs = 150;
 /** windows up to this width start without charts */
 const narrow = 720;
 
@@ -26,12 +28,13 @@ export class Player {
   private readonly charts: Charts;
   private readonly panel: BodyPanel;
   private readonly scrub = byId<HTMLInputElement>("scrub");
-  private readonly quality = new Quality();
+  private readonly quality: Quality;
   private isDirty = true;
   private wasMoving = false;
   private isFollowing = false;
   private drawn = -1;
   private lastTick = 0;
+  private lastMotion = 0;
   private hashTimer = 0;
   private chartTimer = 0;
   private preparing = -1;
@@ -50,6 +53,7 @@ export class Player {
       this.isDirty = true;
       this.saveHash();
     });
+    this.quality = new Quality(this.view.coarserSteps, isSoftware ? this.view.softwareLevel : 0);
     this.playback = new Playback(frameCount, tables.timeStep > 0 ? tables.timeStep : 1 / 60, dirty);
     this.idle = new IdleQueue((error) => this.onError((error as Error).message));
     this.charts = new Charts(tables, frameCount, (frame) => this.playback.seek(frame));
@@ -126,6 +130,7 @@ export class Player {
     speed.addEventListener("change", () => playback.setSpeed(Number(speed.value)));
     this.scrub.addEventListener("input", () => playback.seek(Number(this.scrub.value)));
     window.addEventListener("resize", () => this.resize());
+    document.addEventListener("visibilitychange", () => (this.wasMoving = false));
     window.addEventListener("hashchange", () => {
       const pageState = readHash(location.hash);
       if (pageState.camera) view.camera.eyeAndTarget = pageState.camera;
@@ -148,13 +153,18 @@ export class Player {
     this.lastTick = now;
     const state = document.documentElement.dataset;
     const isMoving = this.isDirty;
+    if (isMoving) this.lastMotion = now;
+    const isSettled = now - this.lastMotion > settleMs;
     state.still = String(!isMoving && !this.view.isCoarse);
-    if (!isMoving && !this.view.isCoarse) return;
+    if (!isMoving && !(this.view.isCoarse && isSettled)) {
+      this.wasMoving = false;
+      return;
+    }
     this.isDirty = false;
     if (this.drawn < 0) this.showFrame();
     if (isMoving && this.wasMoving) this.quality.record(interval);
     this.wasMoving = isMoving;
-    if (this.view.draw(isMoving ? this.quality.share : 1)) this.isDirty = true;
+    if (this.view.draw(isMoving ? this.quality.saving : savesNothing)) this.isDirty = true;
     state.frame = String(this.playback.frame);
   }
 

@@ -4,9 +4,10 @@ import type { Triangles } from "../model";
 import { type Form, isTriangles } from "../shapes/traits";
 import { meshGeometry, unitGeometry } from "./geometries";
 import { makeMaterial } from "./materials";
+import { MergedBatch } from "./merged_batch";
 import type { Part } from "./parts";
 
-/** A set of parts drawn in one call. Slots have the order of the parts in the constructor. */
+/** A set of parts drawn together. Slots have the order of the parts in the constructor. */
 export interface Batch {
   readonly object: Mesh;
   /** sixteen numbers in column order; all 0 hides the part */
@@ -83,11 +84,18 @@ class MeshBatch implements Batch {
   flush(): void {}
 }
 
-/** Groups parts into batches. Returns the batches, and batch and slot of each part in the order of `parts`. */
-export function makeBatches(parts: Part[]): { batches: Batch[]; slots: { batch: Batch; slot: number }[] } {
+/**
+ * Groups parts into batches. `cells`: of simplified shapes; Infinity draws shapes as they are. Returns the batches, and
+ * batch and slot of each part in the order of `parts`.
+ */
+export function makeBatches(
+  parts: Part[],
+  cells: number,
+): { batches: Batch[]; slots: { batch: Batch; slot: number }[] } {
+  const isMerged = cells !== Infinity;
   const groups = new Map<string, Part[]>();
   const keys = parts.map((part) => {
-    const key = `${isTriangles(part.form) ? "triangles" : part.form.name} ${part.sensor}`;
+    const key = `${isMerged || isTriangles(part.form) ? "triangles" : part.form.name} ${part.sensor}`;
     const group = groups.get(key) ?? [];
     groups.set(key, group);
     return { key, slot: group.push(part) - 1 };
@@ -95,9 +103,11 @@ export function makeBatches(parts: Part[]): { batches: Batch[]; slots: { batch: 
   const made = new Map<string, Batch>();
   for (const [key, group] of groups) {
     const { form, sensor } = group[0];
-    const batch = isTriangles(form)
-      ? new MeshBatch(group.map((part) => part.form as Triangles), sensor)
-      : new InstancedBatch(form, sensor, group.length);
+    const batch = isMerged
+      ? new MergedBatch(group, sensor, cells)
+      : isTriangles(form)
+        ? new MeshBatch(group.map((part) => part.form as Triangles), sensor)
+        : new InstancedBatch(form, sensor, group.length);
     batch.object.castShadow = !sensor;
     batch.object.receiveShadow = !sensor;
     batch.object.frustumCulled = false;

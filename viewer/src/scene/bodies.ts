@@ -1,9 +1,9 @@
-/** Draws all bodies: sets the matrices and colours of their parts. */
+/** Draws all bodies at one degree of detail: sets the matrices and colours of their parts. */
 import { Group } from "three";
-import { type Tables, type Vec3 } from "../model";
+import type { Vec3 } from "../model";
 import { type Batch, makeBatches } from "./batch";
 import { type Colouring, colourOf, shadeOf, writeLinear } from "./colours";
-import { makeParts, type Part } from "./parts";
+import type { Part } from "./parts";
 import type { Poses } from "./poses";
 
 const hidden = new Float32Array(16);
@@ -44,7 +44,6 @@ export function writePartMatrix(out: Float32Array, part: Part, poses: Poses, ori
 
 export class BodyLayer {
   readonly group = new Group();
-  readonly parts: Part[];
   private readonly batches: Batch[];
   private readonly slots: { batch: Batch; slot: number }[];
   /** the last drawn pose of each body, seven numbers */
@@ -54,43 +53,47 @@ export class BodyLayer {
   private readonly keys: Int32Array;
   private readonly matrix = new Float32Array(16);
   private readonly colour = new Float32Array(3);
+  private painted = "";
 
+  /** `cells`: of simplified shapes; Infinity draws shapes as they are. */
   constructor(
-    private readonly tables: Tables,
+    private readonly parts: Part[],
+    private readonly bodyCount: number,
     private readonly origin: Vec3,
+    cells: number,
   ) {
-    this.parts = makeParts(tables);
-    const { batches, slots } = makeBatches(this.parts);
+    const { batches, slots } = makeBatches(parts, cells);
     this.batches = batches;
     this.slots = slots;
-    this.drawn = new Float64Array(poseNumbers * tables.bodies.length).fill(NaN);
-    this.shown = new Uint8Array(this.parts.length);
-    this.keys = new Int32Array(this.parts.length).fill(-1);
+    this.drawn = new Float64Array(poseNumbers * bodyCount).fill(NaN);
+    this.shown = new Uint8Array(parts.length);
+    this.keys = new Int32Array(parts.length).fill(-1);
     for (const { object } of batches) this.group.add(object);
   }
 
-  /** Updates the parts of bodies that moved, appeared or disappeared since the last call. */
-  update(poses: Poses): void {
+  /** Updates the parts of bodies that moved, appeared or disappeared since the last call. Returns whether any did. */
+  update(poses: Poses): boolean {
     const moved = this.findMoved(poses);
     const number = poses.frame?.number ?? 0;
+    let changed = false;
     this.parts.forEach((part, i) => {
       const { batch, slot } = this.slots[i];
       const show = poses.present[part.body] === 1 && number >= part.from && number < part.to;
-      if (!show) {
-        if (this.shown[i]) batch.setMatrix(slot, hidden);
-      } else if (moved[part.body] || !this.shown[i]) {
-        writePartMatrix(this.matrix, part, poses, this.origin);
-        batch.setMatrix(slot, this.matrix);
-      }
+      if (show ? this.shown[i] && !moved[part.body] : !this.shown[i]) return;
+      if (show) writePartMatrix(this.matrix, part, poses, this.origin);
+      batch.setMatrix(slot, show ? this.matrix : hidden);
       this.shown[i] = show ? 1 : 0;
+      changed = true;
     });
     for (const batch of this.batches) batch.flush();
+    return changed;
   }
 
   /** Colours all parts for the shown frame. */
   paint(poses: Poses, by: Colouring): void {
     const { frame } = poses;
-    if (!frame) return;
+    if (!frame || this.painted === `${frame.number} ${by}`) return;
+    this.painted = `${frame.number} ${by}`;
     this.parts.forEach((part, i) => {
       const colour = colourOf(part.body, part.colour, frame, by);
       const isOwn = part.colour !== null && by === "material";
@@ -105,7 +108,7 @@ export class BodyLayer {
   }
 
   private findMoved(poses: Poses): Uint8Array {
-    const moved = new Uint8Array(this.tables.bodies.length);
+    const moved = new Uint8Array(this.bodyCount);
     const { drawn } = this;
     const { positions, rotations } = poses;
     for (let row = 0, at = 0; row < moved.length; ++row, at += poseNumbers) {

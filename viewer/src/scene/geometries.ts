@@ -1,11 +1,25 @@
-/** The unit geometries of forms, and three.js geometry of triangle meshes. */
+/** The unit geometries of forms, three.js geometry of triangle meshes, and coarse triangles of both. */
 import { BufferAttribute, BufferGeometry } from "three";
 import type { Triangles } from "../model";
-import type { Form } from "../shapes/traits";
+import { type Form, isTriangles } from "../shapes/traits";
+import { simplify } from "./simplify";
 
 /** Returns the geometry of a form, finer for small counts. */
 export const unitGeometry = (form: Form, count: number): BufferGeometry =>
   form.geometry(count > 4000 ? 14 : count > 800 ? 20 : 32);
+
+/** Returns a form or a mesh with at most `cells` vertices along each axis (simplify.ts). */
+export function coarseTriangles(form: Form | Triangles, cells: number): Triangles {
+  if (isTriangles(form)) return simplify(form, cells);
+  const geometry = form.geometry(16);
+  const made: Triangles = {
+    vertices: Float32Array.from(geometry.getAttribute("position").array),
+    normals: null,
+    triangles: Uint32Array.from(geometry.index?.array ?? []),
+  };
+  geometry.dispose();
+  return simplify(made, cells);
+}
 
 /** Returns a mesh with its normals, or with flat normals (then triangles share no vertices). */
 export function meshGeometry({ vertices, normals, triangles }: Triangles): BufferGeometry {

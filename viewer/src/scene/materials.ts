@@ -1,5 +1,5 @@
 /** Materials of bodies: matt, with the details of their form. */
-import { MeshStandardMaterial } from "three";
+import { type Material, MeshLambertMaterial, MeshStandardMaterial } from "three";
 import type { Form } from "../shapes/traits";
 
 const vertexHead = /* glsl */ `
@@ -23,11 +23,7 @@ vec3 sides(vec3 d) { return clamp(d / max(fwidth(d), vec3(1e-5)), -1.0, 1.0); }
 /** Creates the material of a batch; `form` null: of triangles. Sensors are transparent. */
 export function makeMaterial(form: Form | null, sensor: boolean): MeshStandardMaterial {
   const material = new MeshStandardMaterial({ roughness: 0.78, metalness: 0 });
-  if (sensor) {
-    material.transparent = true;
-    material.opacity = 0.22;
-    material.depthWrite = false;
-  }
+  if (sensor) makeTransparent(material);
   if (!form) return material;
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader
@@ -39,4 +35,17 @@ export function makeMaterial(form: Form | null, sensor: boolean): MeshStandardMa
   };
   material.customProgramCacheKey = () => `fase-${form.name}`;
   return material;
+}
+
+/** Creates the material of simplified shapes: cheap, one normal per triangle, colours by vertex. */
+export function makeCoarseMaterial(sensor: boolean): MeshLambertMaterial {
+  const material = new MeshLambertMaterial({ flatShading: true, vertexColors: true });
+  if (sensor) makeTransparent(material);
+  return material;
+}
+
+function makeTransparent(material: Material): void {
+  material.transparent = true;
+  material.opacity = 0.22;
+  material.depthWrite = false;
 }

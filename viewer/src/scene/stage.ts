@@ -12,9 +12,13 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
+import type { Saving } from "./quality";
 import { horizon, makeSky } from "./sky";
 
 const sunDirection = new Vector3(0.55, 1, 0.38).normalize();
+
+/** pixels drawn per CSS pixel in each direction, without a graphics card */
+const softwareRatio = 1.4;
 
 export class Stage {
   readonly scene = new Scene();
@@ -30,12 +34,14 @@ export class Stage {
     canvas: HTMLCanvasElement,
     private readonly isSoftware: boolean,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    // several samples per pixel are slow without a graphics card: still pictures have more pixels instead
+    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.0;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.autoUpdate = false;
     this.scene.fog = this.fog;
     this.scene.add(makeSky(), new HemisphereLight(0xdbe8fa, 0xa39888, 1.95));
     const back = new DirectionalLight(0xa9c4ff, 0.45);
@@ -60,19 +66,26 @@ export class Stage {
     this.drawnShare = 0;
   }
 
-  /** Whether the last picture had fewer pixels than the screen. */
-  get isCoarse(): boolean {
-    return this.drawnShare < 1;
+  /** The shadows of the last picture are wrong: something that casts them has changed. */
+  invalidateShadows(): void {
+    this.renderer.shadowMap.needsUpdate = true;
   }
 
-  /** Draws one picture with a `share` of the screen's pixels per direction; shadows are sharp within `radius` of `focus`. */
-  render(camera: PerspectiveCamera, share: number, focus: Vector3, radius: number, distance: number): void {
+  /** Draws one picture; shadows are sharp within `radius` of `focus`. */
+  render(
+    camera: PerspectiveCamera,
+    { share, shadows }: Saving,
+    focus: Vector3,
+    radius: number,
+    distance: number,
+  ): void {
     if (share !== this.drawnShare) {
-      this.renderer.setPixelRatio(share * Math.min(window.devicePixelRatio, this.isSoftware ? 1 : 2));
+      this.renderer.setPixelRatio(share * (this.isSoftware ? softwareRatio : Math.min(window.devicePixelRatio, 2)));
       this.renderer.setSize(this.width, this.height, false);
       this.drawnShare = share;
     }
-    this.aimSun(focus, radius);
+    this.sun.castShadow = shadows;
+    if (shadows) this.aimSun(focus, radius);
     this.fog.near = distance + 2 * radius;
     this.fog.far = 4 * distance + 16 * radius;
     this.renderer.render(this.scene, camera);
@@ -97,11 +110,14 @@ export class Stage {
     const right = new Vector3(0, 1, 0).cross(sunDirection).normalize();
     const up = sunDirection.clone().cross(right);
     const snap = (axis: Vector3) => Math.round(focus.dot(axis) / texel) * texel;
-    this.sun.target.position
+    const target = new Vector3()
       .copy(right)
       .multiplyScalar(snap(right))
       .addScaledVector(up, snap(up))
       .addScaledVector(sunDirection, focus.dot(sunDirection));
-    this.sun.position.copy(this.sun.target.position).addScaledVector(sunDirection, 4 * wide);
+    const position = target.clone().addScaledVector(sunDirection, 4 * wide);
+    if (!position.equals(this.sun.position)) this.invalidateShadows();
+    this.sun.target.position.copy(target);
+    this.sun.position.copy(position);
   }
 }

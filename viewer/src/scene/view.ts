@@ -2,19 +2,25 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Frame, Tables, Vec3 } from "../model";
 import { traitsOf } from "../shapes/list";
-import { BodyLayer } from "./bodies";
 import type { Bounds } from "./bounds";
 import { Camera } from "./camera";
 import type { Colouring } from "./colours";
 import { ContactLayer } from "./contacts";
+import { coarsest, DetailedBodies } from "./detail";
 import { makeGround } from "./ground";
 import { Highlight } from "./highlight";
 import { boundsOfInterest } from "./interest";
 import { combine } from "./maths";
 import { type Picked, pick } from "./pick";
 import { Poses } from "./poses";
+import { type Saving, savesNothing, savingOf } from "./quality";
 import { Stage } from "./stage";
 import { WorldBoxes } from "./world_boxes";
+
+/** more triangles than this are simplified even in still pictures */
+const maxStillTriangles = { software: 1e6, hardware: 2e7 };
+/** without a graphics card, pictures of a motion begin with at most this many; shadows count again */
+const maxMovingTriangles = 1e5;
 
 export class View {
   readonly poses: Poses;
@@ -22,7 +28,7 @@ export class View {
   colouring: Colouring = "material";
   private readonly stage: Stage;
   private readonly origin: Vec3;
-  private readonly bodies: BodyLayer;
+  private readonly bodies: DetailedBodies;
   private readonly boxes: WorldBoxes;
   private readonly contacts: ContactLayer;
   private readonly highlight: Highlight;
@@ -31,7 +37,9 @@ export class View {
   private readonly radius: number;
   private width = 1;
   private height = 1;
-  private painted = "";
+  /** the degree of detail of still pictures */
+  private readonly finest: number;
+  private saved = savesNothing;
   private picked: number | null = null;
   private followed: number | null = null;
 
@@ -52,7 +60,8 @@ export class View {
     this.centre = relative(bounds.lo).add(relative(bounds.hi)).multiplyScalar(0.5);
     this.half = relative(bounds.hi).sub(relative(bounds.lo)).multiplyScalar(0.5);
     this.radius = Math.max(0.5, this.half.length());
-    this.bodies = new BodyLayer(tables, this.origin);
+    this.bodies = new DetailedBodies(tables, this.origin);
+    this.finest = this.firstDetailWithin(isSoftware ? maxStillTriangles.software : maxStillTriangles.hardware);
     this.boxes = new WorldBoxes(tables, this.origin);
     this.contacts = new ContactLayer(this.origin, this.radius * 0.02);
     this.highlight = new Highlight(this.bodies.parts, this.origin);
@@ -78,30 +87,44 @@ export class View {
   /** Shows the interpolation of two frames. */
   show(a: Frame, b: Frame, share: number): void {
     this.poses.mix(a, b, share);
-    this.bodies.update(this.poses);
+    if (this.bodies.show(this.poses, this.colouring)) this.stage.invalidateShadows();
     this.boxes.update(this.poses);
     this.contacts.update(a);
     this.highlight.update(this.poses, this.camera.eye);
-    const painted = `${a.number} ${this.colouring}`;
-    if (painted !== this.painted) this.bodies.paint(this.poses, this.colouring);
-    this.painted = painted;
     if (this.followed !== null && this.poses.present[this.followed])
       this.camera.moveFollowed(this.positionOf(this.followed));
   }
 
-  /** Draws one picture with a share of the screen's pixels. Returns true while the camera still moves. */
-  draw(share = 1): boolean {
+  /** Draws one picture. Returns true while the camera still moves. */
+  draw(saving: Saving = savesNothing): boolean {
     const isMoving = this.camera.update();
     this.highlight.update(this.poses, this.camera.eye);
     const { target, distance } = this.camera;
     const near = target.distanceTo(this.centre) < 2 * this.radius && distance > this.radius;
     const focus = near ? this.centre : target;
-    this.stage.render(this.camera.eye, share, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
+    if (this.bodies.show(this.poses, this.colouring, this.finest + saving.coarser)) this.stage.invalidateShadows();
+    this.stage.render(this.camera.eye, saving, focus, near ? this.radius * 1.35 : Math.max(distance, 1), distance);
+    this.saved = saving;
     return isMoving;
   }
 
+  /** Whether the last picture left something out. */
   get isCoarse(): boolean {
-    return this.stage.isCoarse;
+    return this.saved.share < 1 || !this.saved.shadows || this.saved.coarser > 0;
+  }
+
+  /** How many steps coarser than in still pictures the shapes can be drawn. */
+  get coarserSteps(): number {
+    return coarsest - this.finest;
+  }
+  /** Returns the first level of savings (quality.ts) whose pictures draw few enough triangles to move without a graphics card. */
+  get softwareLevel(): number {
+    const costs = Array.from({ length: 2 + this.coarserSteps }, (_, level) => {
+      const { shadows, coarser } = savingOf(level, 1);
+      return (shadows ? 2 : 1) * this.bodies.trianglesAt(this.finest + coarser);
+    });
+    const level = costs.findIndex((cost) => cost <= maxMovingTriangles);
+    return level < 0 ? costs.length - 1 : level;
   }
 
   set showsBoxes(on: boolean) {
@@ -141,6 +164,13 @@ export class View {
     this.camera.eye.updateMatrixWorld();
     projected.project(this.camera.eye);
     return { x: ((projected.x + 1) / 2) * this.width, y: ((1 - projected.y) / 2) * this.height };
+  }
+
+  /** Returns the finest degree of detail with at most `count` triangles, or the second coarsest. */
+  private firstDetailWithin(count: number): number {
+    let detail = 0;
+    while (detail < coarsest - 1 && this.bodies.trianglesAt(detail) > count) ++detail;
+    return detail;
   }
 
   private positionOf(row: number): Vector3 {

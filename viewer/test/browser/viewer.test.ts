@@ -19,6 +19,8 @@ const waitForFrame = (page: Page, frame: number) =>
   page.waitForFunction((expected) => document.documentElement.dataset.frame === String(expected), frame, {
     timeout: 30_000,
   });
+const waitForMore = (page: Page, frame: number) =>
+  page.waitForFunction((passed) => Number(document.documentElement.dataset.frame) > passed, frame, { timeout: 30_000 });
 const text = (page: Page, selector: string) => page.locator(selector).innerText();
 
 /** Returns the page as shown, its charts complete: red, green, blue of every fourth pixel in each direction. */
@@ -47,6 +49,7 @@ interface ViewerWindow {
   fase: {
     recording: Recording;
     view: {
+      saved: { share: number; shadows: boolean; coarser: number };
       poses: { positions: Float64Array };
       camera: { distance: number };
       project(p: number[]): { x: number; y: number };
@@ -265,6 +268,26 @@ describe("the viewer in a browser", { skip }, () => {
     await waitForFrame(page, frame);
     await page.keyboard.press("g");
     assert.equal(await page.isVisible("#charts"), false);
+    await finish(visited);
+  });
+
+  test("without a graphics card, a heavy recording in motion leaves out pixels and shadows, and nothing when still", async () => {
+    const heavy = makeFixture({ frames: 90, columns: 100, courses: 60 }).file;
+    const visited = await open({ file: heavy, hash: "#f=0" });
+    const { page } = visited;
+    const still = await pixels(page);
+    await saveScreenshot(page, "heavy");
+    await page.click("#play");
+    await waitForMore(page, 4);
+    const saved = await page.evaluate(() => (window as unknown as ViewerWindow).fase.view.saved);
+    assert.ok(saved.share < 1 && !saved.shadows, JSON.stringify(saved));
+    await saveScreenshot(page, "heavy-moving");
+    await page.click("#play");
+    await page.keyboard.press("Home");
+    await page.mouse.move(500, 300);
+    const again = await pixels(page);
+    await saveScreenshot(page, "heavy-still");
+    assert.ok(changed(still, again) < 0.002, `${changed(still, again)}`);
     await finish(visited);
   });
 
