@@ -1,4 +1,5 @@
 /** A chart over all frames, stacked or lines, with a cursor at the current frame and one at the pointer. */
+import { type Layout, layOut, linearMarks, logMarks, type Mark } from "./chart_layout";
 import { cssColour, sharpContext } from "./dom";
 
 export interface Series {
@@ -9,7 +10,7 @@ export interface Series {
 }
 export type ChartKind = "stacked" | "lines";
 
-const padTop = 12;
+const font = "10px system-ui, sans-serif";
 
 /** Returns the value that all but `share` of the values do not exceed. */
 function highValue(values: number[], share: number): number {
@@ -22,6 +23,8 @@ export class Chart {
   private isStale = true;
   private hovered: number | null = null;
   private frame = 0;
+  /** the first and the last pixel of the plot; left of it are labels */
+  private plot = { left: 0, right: 1 };
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -65,23 +68,19 @@ export class Chart {
       this.base.height = this.canvas.height;
       const base = this.base.getContext("2d");
       if (!base) return;
+      base.save();
       base.setTransform(this.canvas.width / width, 0, 0, this.canvas.height / height, 0, 0);
-      this.drawBase(base, width, height);
+      this.drawBase(base, width);
+      base.restore();
       this.isStale = false;
     }
     context.drawImage(this.base, 0, 0, width, height);
-    if (this.hovered !== null) this.drawCursor(context, this.hovered, "#ffffff66", width, height);
-    this.drawCursor(context, frame, "#ffb961", width, height);
+    if (this.hovered !== null) this.drawCursor(context, this.hovered, "#ffffff66", height);
+    this.drawCursor(context, frame, "#ffb961", height);
   }
 
-  private drawCursor(
-    context: CanvasRenderingContext2D,
-    frame: number,
-    colour: string,
-    width: number,
-    height: number,
-  ): void {
-    const x = Math.round(this.xOf(frame, width)) + 0.5;
+  private drawCursor(context: CanvasRenderingContext2D, frame: number, colour: string, height: number): void {
+    const x = Math.round(this.xOf(frame)) + 0.5;
     context.strokeStyle = colour;
     context.lineWidth = 1.5;
     context.beginPath();
@@ -90,52 +89,60 @@ export class Chart {
     context.stroke();
   }
 
-  private drawBase(context: CanvasRenderingContext2D, width: number, height: number): void {
+  private drawBase(context: CanvasRenderingContext2D, width: number): void {
     const frames = Math.min(...this.series.map(({ values }) => values.length));
     if (!Number.isFinite(frames) || frames === 0) return;
+    context.font = font;
     const columns = this.columns(frames, width);
-    const plotHeight = height - padTop;
-    if (this.kind === "stacked") {
-      const totals = columns.map((frame) => this.series.reduce((sum, { values }) => sum + values[frame], 0));
-      const top = Math.max(1e-6, highValue(totals, 0.01) * 1.1);
-      this.drawScale(
-        context,
-        width,
-        height,
-        [
-          [top, `${round(top)} ms`],
-          [top / 2, ""],
-        ],
-        (v) => height - (v / top) * plotHeight,
-      );
-      const floor = new Array<number>(columns.length).fill(0);
-      for (const { colour, values } of this.series) {
-        context.fillStyle = cssColour(colour);
-        context.beginPath();
-        columns.forEach((frame, i) => context.lineTo(this.xOf(frame, width), height - (floor[i] / top) * plotHeight));
-        for (let i = columns.length - 1; i >= 0; --i) {
-          floor[i] += values[columns[i]];
-          context.lineTo(this.xOf(columns[i], width), height - (floor[i] / top) * plotHeight);
-        }
-        context.fill();
+    const layout = this.kind === "stacked" ? this.layOutTimes(context, columns) : this.layOutCounts(context, columns);
+    this.plot = layout.plot;
+    this.canvas.dataset.plot = String(layout.plot.left);
+    drawScale(context, layout);
+    const { left, top, right, bottom } = layout.plot;
+    context.beginPath();
+    context.rect(left, top, right - left, bottom - top);
+    context.clip();
+    if (this.kind === "stacked") this.drawAreas(context, columns, layout);
+    else this.drawLines(context, columns, layout);
+  }
+
+  private layOutTimes(context: CanvasRenderingContext2D, columns: number[]): Layout {
+    const totals = columns.map((frame) => this.series.reduce((sum, { values }) => sum + values[frame], 0));
+    const top = Math.max(1e-6, highValue(totals, 0.01) * 1.1);
+    return this.layOut(context, linearMarks(top, (value) => `${round(value)} ms`), (value) => value / top);
+  }
+  private layOutCounts(context: CanvasRenderingContext2D, columns: number[]): Layout {
+    const ofSeries = ({ values }: Series) => columns.reduce((max, frame) => Math.max(max, values[frame]), 0);
+    const max = Math.max(1, ...this.series.map(ofSeries));
+    const top = Math.log10(1 + max) * 1.04;
+    return this.layOut(context, logMarks(max), (value) => Math.log10(1 + value) / top);
+  }
+  private layOut(context: CanvasRenderingContext2D, marks: Mark[], share: (value: number) => number): Layout {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    return layOut(width, height, marks, share, (text) => context.measureText(text).width);
+  }
+
+  private drawAreas(context: CanvasRenderingContext2D, columns: number[], { y }: Layout): void {
+    const floor = new Array<number>(columns.length).fill(0);
+    for (const { colour, values } of this.series) {
+      context.fillStyle = cssColour(colour);
+      context.beginPath();
+      columns.forEach((frame, i) => context.lineTo(this.xOf(frame), y(floor[i])));
+      for (let i = columns.length - 1; i >= 0; --i) {
+        floor[i] += values[columns[i]];
+        context.lineTo(this.xOf(columns[i]), y(floor[i]));
       }
-      return;
+      context.fill();
     }
-    const maxValue = Math.max(
-      1,
-      ...this.series.map(({ values }) => columns.reduce((m, frame) => Math.max(m, values[frame]), 0)),
-    );
-    const top = Math.log10(1 + maxValue) * 1.04;
-    const y = (value: number) => height - 1 - (Math.log10(1 + value) / top) * (plotHeight - 2);
-    const marks: [number, string][] = [];
-    for (let mark = 10; mark <= maxValue; mark *= 10) marks.push([mark, mark >= 1000 ? `${mark / 1000}k` : `${mark}`]);
-    this.drawScale(context, width, height, marks, y);
+  }
+
+  private drawLines(context: CanvasRenderingContext2D, columns: number[], { y }: Layout): void {
     for (const { colour, values } of this.series) {
       context.strokeStyle = cssColour(colour);
       context.lineWidth = 1.5;
       context.lineJoin = "round";
       context.beginPath();
-      for (const frame of columns) context.lineTo(this.xOf(frame, width), y(values[frame]));
+      for (const frame of columns) context.lineTo(this.xOf(frame), y(values[frame]));
       context.stroke();
     }
   }
@@ -154,42 +161,32 @@ export class Chart {
     });
   }
 
-  private drawScale(
-    context: CanvasRenderingContext2D,
-    width: number,
-    height: number,
-    marks: [number, string][],
-    y: (value: number) => number,
-  ): void {
-    context.font = "10px system-ui, sans-serif";
-    context.textBaseline = "bottom";
-    let above = Infinity;
-    for (const [value, text] of marks) {
-      const lineY = Math.round(y(value)) + 0.5;
-      if (lineY < 0 || lineY > height) continue;
-      context.strokeStyle = "#ffffff1c";
-      context.lineWidth = 1;
-      context.beginPath();
-      context.moveTo(0, lineY);
-      context.lineTo(width, lineY);
-      context.stroke();
-      context.fillStyle = "#aeb9c7";
-      if (text && above - lineY > 13) {
-        context.fillText(text, 2, lineY - 1);
-        above = lineY;
-      }
-    }
-  }
-
-  private xOf(frame: number, width: number): number {
-    return this.frameCount > 1 ? (frame / (this.frameCount - 1)) * (width - 2) + 1 : width / 2;
+  private xOf(frame: number): number {
+    const { left, right } = this.plot;
+    return this.frameCount > 1 ? left + 1 + (frame / (this.frameCount - 1)) * (right - left - 2) : (left + right) / 2;
   }
 
   private frameAt(event: PointerEvent): number {
-    const { left, width } = this.canvas.getBoundingClientRect();
-    const share = (event.clientX - left - 1) / Math.max(1, width - 2);
+    const { left, right } = this.plot;
+    const x = event.clientX - this.canvas.getBoundingClientRect().left;
+    const share = (x - left - 1) / Math.max(1, right - left - 2);
     return Math.max(0, Math.min(this.frameCount - 1, Math.round(share * (this.frameCount - 1))));
   }
+}
+
+/** Draws the lines of the scale and, outside the plot, its labels. */
+function drawScale(context: CanvasRenderingContext2D, { plot, labels, lines }: Layout): void {
+  context.strokeStyle = "#ffffff1c";
+  context.lineWidth = 1;
+  for (const y of lines) {
+    context.beginPath();
+    context.moveTo(plot.left, y);
+    context.lineTo(plot.right, y);
+    context.stroke();
+  }
+  context.fillStyle = "#aeb9c7";
+  context.textBaseline = "middle";
+  for (const { text, box } of labels) context.fillText(text, box.left, (box.top + box.bottom) / 2);
 }
 
 /** Formats with three digits and no exponent. */

@@ -257,17 +257,44 @@ describe("the viewer in a browser", { skip }, () => {
     const box = await page.locator("#chart-times").boundingBox();
     assert.ok(box);
     await page.waitForSelector("html[data-charts=complete]");
-    await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+    const left = Number(await page.getAttribute("#chart-times", "data-plot"));
+    const quarter = box.x + left + (box.width - left) / 4;
+    await page.mouse.move(quarter, box.y + box.height / 2);
     await page.waitForSelector("#tip:not([hidden])");
     const tip = await text(page, "#tip");
     for (const words of ["solve", "contact points"]) assert.ok(tip.includes(words), words);
     const frame = Number(/frame (\d+)/.exec(tip)?.[1]);
     assert.ok(Math.abs(frame - 60) <= 1, `frame ${frame}`);
     await saveScreenshot(page, "chart");
-    await page.mouse.click(box.x + box.width / 4, box.y + box.height / 2);
+    await page.mouse.click(quarter, box.y + box.height / 2);
     await waitForFrame(page, frame);
     await page.keyboard.press("g");
     assert.equal(await page.isVisible("#charts"), false);
+    await finish(visited);
+  });
+
+  test("no line, area or cursor of a chart crosses its labels", async () => {
+    const visited = await open({ hash: "#f=0" });
+    const { page } = visited;
+    await pixels(page);
+    for (const id of ["chart-times", "chart-counts"]) {
+      const seen = await page.evaluate((name) => {
+        const canvas = document.getElementById(name) as HTMLCanvasElement;
+        const left = Math.floor((Number(canvas.dataset.plot) * canvas.width) / canvas.clientWidth) - 1;
+        const { data } = (canvas.getContext("2d") as CanvasRenderingContext2D).getImageData(0, 0, canvas.width, canvas.height);
+        const found = { text: 0, coloured: 0, plot: 0 };
+        for (let i = 0; i < data.length; i += 4) {
+          const [r, g, b, alpha] = data.subarray(i, i + 4);
+          const isColoured = alpha > 40 && Math.max(r, g, b) - Math.min(r, g, b) > 50;
+          if ((i / 4) % canvas.width >= left) found.plot += isColoured ? 1 : 0;
+          else if (isColoured) ++found.coloured;
+          else if (alpha > 100) ++found.text;
+        }
+        return found;
+      }, id);
+      assert.ok(seen.text > 20 && seen.plot > 200, `${id}: ${JSON.stringify(seen)}`);
+      assert.equal(seen.coloured, 0, id);
+    }
     await finish(visited);
   });
 
