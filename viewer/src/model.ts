@@ -70,6 +70,12 @@ export const flagAwake = 1;
 export const flagBroken = 2;
 export const kindOf = (flags: number): BodyKind => Math.min(2, (flags >> 2) & 3) as BodyKind;
 
+/** What a user picked: the row of a body, and the position of the hit shape in its list of colliders; null: the whole body. */
+export interface Selection {
+  body: number;
+  shape: number | null;
+}
+
 /** Two colliders. */
 export interface PairEvent {
   a: number;

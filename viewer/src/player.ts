@@ -7,7 +7,7 @@ import { drawMarks } from "./ui/marks";
 import { listenToTaps } from "./ui/taps";
 import { readHash, writeHash } from "./hash";
 import { IdleQueue } from "./idle";
-import type { Frame } from "./model";
+import type { Frame, Selection } from "./model";
 import { Playback, speeds } from "./playback";
 import type { Recording } from "./recording";
 import { type Colouring, colourings, legendOf } from "./scene/colours";
@@ -121,7 +121,7 @@ export class Player {
     click("help-close", commands.help);
     help.addEventListener("click", (event) => event.target === help && help.close());
     listenToKeys(commands);
-    listenToTaps(canvas, (x, y) => this.select(view.pickAt(x, y)?.body ?? null));
+    listenToTaps(canvas, (x, y) => this.select(view.pickAt(x, y)));
 
     const colours = byId<HTMLSelectElement>("colours");
     colours.addEventListener("change", () => this.setColouring(colours.value as Colouring));
@@ -223,12 +223,12 @@ export class Player {
   }
 
   private showBody(frame: Frame): void {
-    const row = this.view.selected;
-    if (row === null && this.panel.shown === null) return;
+    const selection = this.view.selected;
+    if (selection === null && this.panel.shown === null) return;
     const before = this.frameAt(frame.number - 1);
     const after = this.frameAt(frame.number + 1);
-    const isIn = (other: Frame) => row !== null && other.present[row] === 1;
-    this.panel.show(row, frame, isIn(before) ? before : frame, isIn(after) ? after : frame, this.isFollowing);
+    const isIn = (other: Frame) => selection !== null && other.present[selection.body] === 1;
+    this.panel.show(selection, frame, isIn(before) ? before : frame, isIn(after) ? after : frame, this.isFollowing);
   }
 
   private refreshCharts(): void {
@@ -241,14 +241,14 @@ export class Player {
     document.documentElement.dataset.charts = isComplete ? "complete" : "loading";
   }
 
-  private select(row: number | null): void {
-    if (row !== this.view.selected) this.follow(false);
-    this.view.select(row);
+  private select(selection: Selection | null): void {
+    if (selection?.body !== this.view.selected?.body) this.follow(false);
+    this.view.select(selection);
     this.invalidate();
   }
 
   private follow(on: boolean): void {
-    const row = this.view.selected;
+    const row = this.view.selected?.body ?? null;
     this.isFollowing = on && row !== null;
     this.view.follow(this.isFollowing ? row : null);
     this.invalidate();

@@ -86,7 +86,10 @@ function wall(columns: number, courses: number): Actor[] {
   return actors;
 }
 
-function cast(columns: number, courses: number): Actor[] {
+/** Where shape `n` of the body "level" is, relative to the body. */
+export const tileAt = (n: number): Vec3 => [(n % 40) * 0.61, 0, Math.floor(n / 40) * 0.61];
+
+function cast(columns: number, courses: number, tiles: number): Actor[] {
   const still = { kind: 2, mass: 100, colour: null, half: 0.5, free: null };
   const fall = (spin: Vec3) => ({ at: 0, velocity: [0, 0, 0] as Vec3, spin });
   return [
@@ -117,6 +120,7 @@ function cast(columns: number, courses: number): Actor[] {
     },
     { ...still, name: "statue", shape: 7, mesh: 0, half: 0.3, start: [7, 0.6, 3] },
     ...wall(columns, courses),
+    ...(tiles > 0 ? [{ ...still, kind: 0, mass: 0, name: "level", shape: 7, half: 0.3, start: [-12, 0.3, -24] as Vec3 }] : []),
   ];
 }
 
@@ -166,6 +170,10 @@ export interface FixtureOptions {
   blockFrames?: number;
   pack?: Packer;
   timeStep?: number;
+  /** default: true */
+  contacts?: boolean;
+  /** adds a static body "level" with so many shapes; default: none */
+  tiles?: number;
 }
 
 /** A recording and the frames that it was made from. */
@@ -177,8 +185,8 @@ export interface Fixture {
 }
 
 export function makeFixture(options: FixtureOptions = {}): Fixture {
-  const { frames = 150, columns = 16, courses = 12, blockFrames = 32, pack = plain } = options;
-  const actors = cast(columns, courses);
+  const { frames = 150, columns = 16, courses = 12, blockFrames = 32, pack = plain, tiles = 0 } = options;
+  const actors = cast(columns, courses, tiles);
   const bodyRows: BodyRow[] = actors.map(({ kind, mass, colour, name }, i) => ({
     index: i,
     generation: 1,
@@ -189,6 +197,8 @@ export function makeFixture(options: FixtureOptions = {}): Fixture {
     name,
   }));
   const colliderRows: ColliderRow[] = actors.map(({ shape, sensor = false }, body) => ({ body, shape, sensor }));
+  for (let n = 1; n < tiles; ++n)
+    colliderRows.push({ body: actors.length - 1, shape: 7, pose: { position: tileAt(n), rotation: [0, 0, 0, 1] } });
   const statue = actors.findIndex(({ mesh }) => mesh !== undefined);
   const pieces = [
     chunk(
@@ -197,7 +207,7 @@ export function makeFixture(options: FixtureOptions = {}): Fixture {
         title: "test wall",
         timeStep: options.timeStep ?? timeStep,
         quantaPerMetre: quanta,
-        hasContacts: true,
+        hasContacts: options.contacts ?? true,
         stageNames: ["refresh", "pairs", "collide", "islands", "solve", "finish", "sleep", "events"],
         counterNames: ["bodies", "awake", "pairs", "manifolds", "contact_points", "islands"],
       }),
@@ -214,6 +224,7 @@ export function makeFixture(options: FixtureOptions = {}): Fixture {
   const inputs: FrameInput[] = [];
   for (let number = 0; number < frames; ++number) {
     const input = frameAt(actors, number);
+    if (options.contacts === false) delete input.contacts;
     inputs.push(input);
     encoder.add(input);
     if (encoder.pending === blockFrames || number === frames - 1) pieces.push(chunk("FRMS", encoder.takeBlock(), pack));

@@ -1,54 +1,103 @@
-/** A bright outline around the picked body: its parts, slightly enlarged, drawn from inside. */
-import { BackSide, Group, Mesh, MeshBasicMaterial, type PerspectiveCamera } from "three";
-import type { Triangles, Vec3 } from "../model";
+/**
+ * Marks what is selected. A body has a bright outline: its parts, slightly enlarged, drawn from inside. A shape among
+ * others of its body is tinted and has bright edges: its neighbours would cover an outline.
+ */
+import {
+  BackSide,
+  type BufferGeometry,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  type PerspectiveCamera,
+} from "three";
+import type { Selection, Tables, Triangles, Vec3 } from "../model";
 import { isTriangles } from "../shapes/traits";
 import { writePartMatrix } from "./bodies";
 import { meshGeometry, unitGeometry } from "./geometries";
-import type { Part } from "./parts";
+import { type Part, partsOfSelection } from "./parts";
 import type { Poses } from "./poses";
 
 /** width of the outline as a share of the distance to the eye */
 const width = 0.0035;
+const accent = 0xffb961;
+const minEdgeDegrees = 20;
+/** of a body with more parts, only the first are outlined */
+const maxParts = 256;
+
+type Marking = Mesh | LineSegments;
 
 export class Highlight {
   readonly group = new Group();
-  private readonly material = new MeshBasicMaterial({ color: 0xffb961, side: BackSide, fog: false, toneMapped: false });
+  private readonly outline = new MeshBasicMaterial({ color: accent, side: BackSide, fog: false, toneMapped: false });
+  private readonly tint = new MeshBasicMaterial({
+    color: accent,
+    transparent: true,
+    opacity: 0.5,
+    depthWrite: false,
+    polygonOffset: true,
+    polygonOffsetFactor: -1,
+    polygonOffsetUnits: -4,
+    fog: false,
+    toneMapped: false,
+  });
+  private readonly edges = new LineBasicMaterial({
+    color: accent,
+    transparent: true,
+    depthTest: false,
+    fog: false,
+    toneMapped: false,
+  });
   private parts: Part[] = [];
 
   constructor(
+    private readonly tables: Tables,
     private readonly all: Part[],
     private readonly origin: Vec3,
   ) {}
 
-  /** Outlines a body; null: none. */
-  show(row: number | null): void {
-    for (const child of this.group.children) (child as Mesh).geometry.dispose();
+  /** Marks a body or one of its shapes; null: nothing. */
+  show(selection: Selection | null): void {
+    for (const child of this.group.children) (child as Marking).geometry.dispose();
     this.group.clear();
-    this.parts = row === null ? [] : this.all.filter((part) => part.body === row);
-    for (const part of this.parts) {
+    const parts = selection ? partsOfSelection(this.tables, this.all, selection).slice(0, maxParts) : [];
+    const isAmongOthers = selection?.shape != null && this.tables.bodies[selection.body].colliders.length > 1;
+    this.parts = [];
+    for (const part of parts) {
       const geometry = isTriangles(part.form) ? meshGeometry(part.form).center() : unitGeometry(part.form, 1);
-      const mesh = new Mesh(geometry, this.material);
-      mesh.matrixAutoUpdate = false;
-      mesh.frustumCulled = false;
-      this.group.add(mesh);
+      for (const marking of isAmongOthers ? this.tinted(geometry) : [new Mesh(geometry, this.outline)]) {
+        marking.matrixAutoUpdate = false;
+        marking.frustumCulled = false;
+        this.group.add(marking);
+        this.parts.push(part);
+      }
     }
+  }
+
+  private tinted(geometry: BufferGeometry): Marking[] {
+    const lines = new LineSegments(new EdgesGeometry(geometry, minEdgeDegrees), this.edges);
+    lines.renderOrder = 5;
+    return [new Mesh(geometry, this.tint), lines];
   }
 
   update(poses: Poses, eye: PerspectiveCamera): void {
     const number = poses.frame?.number ?? 0;
     const matrix = new Float32Array(16);
     this.parts.forEach((part, i) => {
-      const mesh = this.group.children[i] as Mesh;
-      mesh.visible = poses.present[part.body] === 1 && number >= part.from && number < part.to;
+      const marking = this.group.children[i] as Marking;
+      marking.visible = poses.present[part.body] === 1 && number >= part.from && number < part.to;
       writePartMatrix(matrix, part, poses, this.origin);
       const distance = Math.hypot(
         matrix[12] - eye.position.x,
         matrix[13] - eye.position.y,
         matrix[14] - eye.position.z,
       );
-      if (isTriangles(part.form)) enlargeMesh(matrix, part.form, distance * width);
-      else writePartMatrix(matrix, part, poses, this.origin, distance * width);
-      mesh.matrix.fromArray(matrix);
+      const margin = marking.material === this.outline ? distance * width : 0;
+      if (isTriangles(part.form)) enlargeMesh(matrix, part.form, margin);
+      else writePartMatrix(matrix, part, poses, this.origin, margin);
+      marking.matrix.fromArray(matrix);
     });
   }
 }

@@ -1,6 +1,6 @@
 /** The view of a recording: stage, bodies, overlays and camera. */
 import { Matrix4, Quaternion, Vector3 } from "three";
-import type { Frame, Tables, Vec3 } from "../model";
+import type { Frame, Selection, Tables, Vec3 } from "../model";
 import { traitsOf } from "../shapes/list";
 import type { Bounds } from "./bounds";
 import { Camera } from "./camera";
@@ -11,7 +11,7 @@ import { makeGround } from "./ground";
 import { Highlight } from "./highlight";
 import { boundsOfInterest } from "./interest";
 import { combine } from "./maths";
-import { type Picked, pick } from "./pick";
+import { pick } from "./pick";
 import { Poses } from "./poses";
 import { type Saving, savesNothing, savingOf } from "./quality";
 import { Stage } from "./stage";
@@ -40,7 +40,7 @@ export class View {
   /** the degree of detail of still pictures */
   private readonly finest: number;
   private saved = savesNothing;
-  private picked: number | null = null;
+  private selection: Selection | null = null;
   private followed: number | null = null;
 
   /** Throws when the browser has no WebGL 2. `onChange`: the camera moved. */
@@ -64,7 +64,7 @@ export class View {
     this.finest = this.firstDetailWithin(isSoftware ? maxStillTriangles.software : maxStillTriangles.hardware);
     this.boxes = new WorldBoxes(tables, this.origin);
     this.contacts = new ContactLayer(this.origin, this.radius * 0.02);
-    this.highlight = new Highlight(this.bodies.parts, this.origin);
+    this.highlight = new Highlight(tables, this.bodies.parts, this.origin);
     for (const object of [this.bodies.group, this.boxes.object, this.contacts.group, this.highlight.group])
       this.stage.add(object);
     this.addGround(bounds);
@@ -136,21 +136,23 @@ export class View {
     if (this.poses.frame) this.contacts.update(this.poses.frame);
   }
 
-  /** Returns the body at a point of the window, in CSS pixels; null: none, or the ground. */
-  pickAt(x: number, y: number): Picked | null {
+  /** Returns the shape at a point of the window, in CSS pixels; null: none, or the ground. */
+  pickAt(x: number, y: number): Selection | null {
     const ray = this.camera.ray((2 * x) / this.width - 1, 1 - (2 * y) / this.height);
     const origin = ray.origin.map((c, i) => c + this.origin[i]) as Vec3;
     const picked = pick(this.tables, this.poses, { origin, direction: ray.direction });
     if (!picked) return null;
-    return traitsOf(this.tables.shapes[this.tables.colliders[picked.collider].shape]).isGround ? null : picked;
+    const { body, collider } = picked;
+    if (traitsOf(this.tables.shapes[this.tables.colliders[collider].shape]).isGround) return null;
+    return { body, shape: this.tables.bodies[body].colliders.indexOf(collider) };
   }
-  select(row: number | null): void {
-    this.picked = row;
-    this.highlight.show(row);
+  select(selection: Selection | null): void {
+    this.selection = selection;
+    this.highlight.show(selection);
     this.highlight.update(this.poses, this.camera.eye);
   }
-  get selected(): number | null {
-    return this.picked;
+  get selected(): Selection | null {
+    return this.selection;
   }
   /** Makes the camera follow a body; null: stops. */
   follow(row: number | null): void {

@@ -1,7 +1,13 @@
-/** The panel that shows the state of the picked body. */
-import { type Body, flagAwake, flagBroken, type Frame, kindNames, kindOf, type Tables } from "../model";
+/** The panel that shows the state of the selected body and which of its shapes is selected. */
+import { type Body, flagAwake, flagBroken, type Frame, kindNames, kindOf, type Selection, type Tables } from "../model";
+import { existsAt } from "../scene/bounds";
 import { traitsOf } from "../shapes/list";
 import { byId, make } from "./dom";
+
+/** of a body with many shapes, so many are described */
+const maxDescribed = 64;
+const maxLines = 4;
+const count = (n: number): string => n.toLocaleString("en-GB");
 
 /** Returns the body's name, or one made from its index. */
 export const nameOf = (body: Body): string => body.name || `body ${body.index}`;
@@ -28,7 +34,7 @@ export function speedBetween(row: number, a: Frame, b: Frame): number | null {
 
 export class BodyPanel {
   private readonly root = byId("body");
-  private row: number | null = null;
+  private selection: Selection | null = null;
 
   constructor(
     private readonly tables: Tables,
@@ -39,21 +45,26 @@ export class BodyPanel {
   }
 
   /** Shows a body at `frame`; the speed is that between `before` and `after`. */
-  show(row: number | null, frame: Frame, before: Frame, after: Frame, isFollowed: boolean): void {
-    this.root.hidden = row === null;
-    this.row = row;
-    if (row === null) return;
+  show(selection: Selection | null, frame: Frame, before: Frame, after: Frame, isFollowed: boolean): void {
+    this.root.hidden = selection === null;
+    this.selection = selection;
+    if (selection === null) return;
+    const row = selection.body;
     const body = this.tables.bodies[row];
     byId("body-name").textContent = nameOf(body);
     byId("follow").setAttribute("aria-pressed", String(isFollowed));
     const lines = frame.present[row]
-      ? this.lines(row, body, frame, speedBetween(row, before, after))
+      ? [
+          ...describeShape(this.tables, selection),
+          ...this.lines(row, body, frame, speedBetween(row, before, after)),
+          ...listShapes(this.tables, frame, row),
+        ]
       : [["state", "not in the world"]];
     byId("body-state").replaceChildren(...lines.flatMap(([name, value]) => [make("dt", name), make("dd", value)]));
   }
 
-  get shown(): number | null {
-    return this.row;
+  get shown(): Selection | null {
+    return this.selection;
   }
 
   private lines(row: number, body: Body, frame: Frame, speed: number | null): string[][] {
@@ -63,14 +74,6 @@ export class BodyPanel {
     const [x, y, z, w] = frame.rotations.subarray(4 * row, 4 * row + 4);
     const island = frame.islands[row];
     const isBroken = (flags & flagBroken) !== 0;
-    const shapes = new Map<string, number>();
-    for (const index of body.colliders) {
-      const { shape: at, sensor, from, to } = this.tables.colliders[index];
-      if (frame.number < from || frame.number >= to) continue;
-      const shape = this.tables.shapes[at];
-      const words = traitsOf(shape).describe(shape) + (sensor ? " (sensor)" : "");
-      shapes.set(words, (shapes.get(words) ?? 0) + 1);
-    }
     return [
       ["index", `${body.index} · generation ${body.generation}`],
       ["kind", kindNames[kind]],
@@ -81,7 +84,37 @@ export class BodyPanel {
       ["speed", speed === null ? "–" : `${speed.toFixed(3)} m/s`],
       ["island", island === 0 ? "none" : String(island - 1)],
       ["user number", body.user.toString()],
-      ...[...shapes].map(([words, count], i) => [i === 0 ? "shapes" : "", count > 1 ? `${count} × ${words}` : words]),
     ];
   }
+}
+
+/** Names the selected shape and its number among the shapes of its body; of a body with one shape: no lines. */
+export function describeShape(tables: Tables, { body, shape }: Selection): string[][] {
+  const { colliders } = tables.bodies[body];
+  if (shape === null || colliders.length < 2) return [];
+  return [
+    ["shape", describeCollider(tables, colliders[shape])],
+    ["", `number ${count(shape + 1)} of ${count(colliders.length)}`],
+  ];
+}
+
+/** Lists a few of the shapes that a body has at the frame, equal ones together, then how many more there are. */
+export function listShapes(tables: Tables, frame: Frame, row: number): string[][] {
+  const existing = tables.bodies[row].colliders.filter((index) => existsAt(tables.colliders[index], frame));
+  const groups = new Map<string, number>();
+  for (const index of existing.slice(0, maxDescribed)) {
+    const words = describeCollider(tables, index);
+    groups.set(words, (groups.get(words) ?? 0) + 1);
+  }
+  const listed = [...groups].slice(0, maxLines);
+  const values = listed.map(([words, n]) => (n > 1 ? `${count(n)} × ${words}` : words));
+  const left = existing.length - listed.reduce((sum, [, n]) => sum + n, 0);
+  if (left > 0) values.push(`and ${count(left)} more`);
+  return values.map((value, i) => [i === 0 ? "shapes" : "", value]);
+}
+
+function describeCollider(tables: Tables, index: number): string {
+  const { shape: at, sensor } = tables.colliders[index];
+  const shape = tables.shapes[at];
+  return traitsOf(shape).describe(shape) + (sensor ? " (sensor)" : "");
 }

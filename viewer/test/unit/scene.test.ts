@@ -6,12 +6,12 @@ import type { Vec3 } from "../../src/model";
 import { Playback } from "../../src/playback";
 import { Recording } from "../../src/recording";
 import { worldBox } from "../../src/scene/bounds";
-import { makeParts } from "../../src/scene/parts";
+import { makeParts, partsOfSelection } from "../../src/scene/parts";
 import { pick } from "../../src/scene/pick";
 import { Poses } from "../../src/scene/poses";
 import { traitsOf } from "../../src/shapes/list";
-import { speedBetween } from "../../src/ui/body_panel";
-import { makeFixture } from "../fixtures";
+import { describeShape, listShapes, speedBetween } from "../../src/ui/body_panel";
+import { makeFixture, tileAt } from "../fixtures";
 
 const recording = Recording.openNow(makeFixture({ frames: 100, columns: 8, courses: 6 }).file);
 const posesAt = (number: number) => {
@@ -135,4 +135,37 @@ test("frame and camera round-trip through the address", () => {
   assert.deepEqual(readHash(writeHash(place)), place);
   assert.deepEqual(readHash("#f=-3&c=1,2,x"), { frame: null, camera: null });
   assert.deepEqual(readHash(""), { frame: null, camera: null });
+});
+
+test("of a body with many shapes, the one that was hit is picked, outlined and named", () => {
+  const tiles = 1280;
+  const level = Recording.openNow(makeFixture({ frames: 4, columns: 4, courses: 2, tiles }).file);
+  const { tables } = level;
+  const row = tables.bodies.findIndex(({ name }) => name === "level");
+  const poses = new Poses(tables.bodies.length);
+  poses.mix(level.frame(0), level.frame(0), 0);
+  const parts = makeParts(tables);
+  for (const n of [1, 39, 40, 1279]) {
+    const tile = tileAt(n);
+    const origin = tile.map((x, i) => x + poses.positions[3 * row + i]) as Vec3;
+    const picked = pick(tables, poses, { origin: [origin[0], 20, origin[2]], direction: [0, -1, 0] });
+    assert.equal(picked?.body, row);
+    const shape = tables.bodies[row].colliders.indexOf(picked.collider);
+    assert.equal(shape, n);
+    const shown = partsOfSelection(tables, parts, { body: row, shape });
+    assert.equal(shown.length, 1);
+    shown[0].pose.position.forEach((x, i) => assert.ok(Math.abs(x - tile[i]) < 1e-5));
+    assert.deepEqual(describeShape(tables, { body: row, shape }), [
+      ["shape", "box 0.6 × 0.6 × 0.6 m"],
+      ["", `number ${(n + 1).toLocaleString("en-GB")} of 1,280`],
+    ]);
+    assert.deepEqual(listShapes(tables, level.frame(0), row), [
+      ["shapes", "64 × box 0.6 × 0.6 × 0.6 m"],
+      ["", "and 1,216 more"],
+    ]);
+  }
+  assert.equal(partsOfSelection(tables, parts, { body: row, shape: null }).length, tiles);
+  const ball = tables.bodies.findIndex(({ name }) => name === "ball");
+  assert.deepEqual(describeShape(tables, { body: ball, shape: 0 }), []);
+  assert.deepEqual(listShapes(tables, level.frame(0), ball), [["shapes", "sphere r 0.6 m"]]);
 });
