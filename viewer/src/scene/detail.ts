@@ -4,7 +4,8 @@ import type { Tables, Triangles, Vec3 } from "../model";
 import { type Form, isTriangles } from "../shapes/traits";
 import { BodyLayer } from "./bodies";
 import type { Colouring } from "./colours";
-import { coarseTriangles, unitGeometry } from "./geometries";
+import { unitGeometry } from "./geometries";
+import { coarseShapes } from "./merged_batch";
 import { makeParts, type Part } from "./parts";
 import type { Poses } from "./poses";
 
@@ -43,16 +44,17 @@ export class DetailedBodies {
 
   /** Returns the number of triangles of all parts at a degree of detail. */
   trianglesAt(detail: number): number {
+    if (detail > 0)
+      return coarseShapes(this.parts, cells[detail]).reduce((sum, { triangles }) => sum + triangles.length / 3, 0);
     const counts = new Map<Form | Triangles, number>();
     for (const { form } of this.parts) counts.set(form, (counts.get(form) ?? 0) + 1);
     let sum = 0;
-    for (const [form, count] of counts) sum += count * trianglesOf(form, count, cells[detail]);
+    for (const [form, count] of counts) sum += count * trianglesOf(form, count);
     return sum;
   }
 }
 
-function trianglesOf(form: Form | Triangles, count: number, cells: number): number {
-  if (cells !== Infinity) return coarseTriangles(form, cells).triangles.length / 3;
+function trianglesOf(form: Form | Triangles, count: number): number {
   if (isTriangles(form)) return form.triangles.length / 3;
   const geometry = unitGeometry(form, count);
   geometry.dispose();

@@ -8,9 +8,9 @@ import { simplify } from "./simplify";
 export const unitGeometry = (form: Form, count: number): BufferGeometry =>
   form.geometry(count > 4000 ? 14 : count > 800 ? 20 : 32);
 
-/** Returns a form or a mesh with at most `cells` vertices along each axis (simplify.ts). */
+/** Returns a form or a mesh with at most `cells` vertices along each axis (simplify.ts); Infinity: a mesh as it is. */
 export function coarseTriangles(form: Form | Triangles, cells: number): Triangles {
-  if (isTriangles(form)) return simplify(form, cells);
+  if (isTriangles(form)) return cells === Infinity ? form : simplify(form, cells);
   const geometry = form.geometry(16);
   const made: Triangles = {
     vertices: Float32Array.from(geometry.getAttribute("position").array),
@@ -18,7 +18,7 @@ export function coarseTriangles(form: Form | Triangles, cells: number): Triangle
     triangles: Uint32Array.from(geometry.index?.array ?? []),
   };
   geometry.dispose();
-  return simplify(made, cells);
+  return cells === Infinity ? made : simplify(made, cells);
 }
 
 /** Returns a mesh with its normals, or with flat normals (then triangles share no vertices). */

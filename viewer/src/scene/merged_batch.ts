@@ -10,6 +10,18 @@ import { coarseTriangles } from "./geometries";
 import { makeCoarseMaterial } from "./materials";
 import type { Part } from "./parts";
 
+/** Returns the simplified shape of each part. What is static stays as it is: a level would fall to pieces. */
+export function coarseShapes(parts: Part[], cells: number): Triangles[] {
+  const moving = new Map<Form | Triangles, Triangles>();
+  const fixed = new Map<Form | Triangles, Triangles>();
+  return parts.map(({ form, isStatic }) => {
+    const made = isStatic ? fixed : moving;
+    let shape = made.get(form);
+    if (!shape) made.set(form, (shape = coarseTriangles(form, isStatic ? Infinity : cells)));
+    return shape;
+  });
+}
+
 export class MergedBatch implements Batch {
   readonly object: Mesh;
   private readonly shapes: Triangles[];
@@ -20,9 +32,7 @@ export class MergedBatch implements Batch {
 
   /** `cells`: of the simplified shapes */
   constructor(parts: Part[], sensor: boolean, cells: number) {
-    const made = new Map<Form | Triangles, Triangles>();
-    for (const { form } of parts) if (!made.has(form)) made.set(form, coarseTriangles(form, cells));
-    this.shapes = parts.map(({ form }) => made.get(form) as Triangles);
+    this.shapes = coarseShapes(parts, cells);
     this.first = new Uint32Array(parts.length + 1);
     this.shapes.forEach(({ vertices }, i) => (this.first[i + 1] = this.first[i] + vertices.length / 3));
     const count = this.first[parts.length];

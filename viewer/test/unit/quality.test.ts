@@ -2,16 +2,18 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Mesh } from "three";
-import type { Vec3 } from "../../src/model";
+import type { Triangles, Vec3 } from "../../src/model";
 import { Recording } from "../../src/recording";
 import { coarsest, DetailedBodies } from "../../src/scene/detail";
 import { coarseTriangles } from "../../src/scene/geometries";
+import { coarseShapes } from "../../src/scene/merged_batch";
+import { makeParts } from "../../src/scene/parts";
 import { Poses } from "../../src/scene/poses";
 import { Quality } from "../../src/scene/quality";
 import { simplify } from "../../src/scene/simplify";
 import { traitsOf } from "../../src/shapes/list";
 import { makeFixture } from "../fixtures";
-import { examples } from "../shapes";
+import { examples, octahedron } from "../shapes";
 
 /** Records pictures for some seconds on a machine that needs `cost(saving)` milliseconds for each. Returns the last interval. */
 function play(quality: Quality, seconds: number, cost: (saving: Quality["saving"]) => number): number {
@@ -102,6 +104,18 @@ test("a box keeps its eight corners at any degree of detail", () => {
     const { vertices, triangles } = coarseTriangles(form, cells);
     assert.deepEqual([vertices.length / 3, triangles.length / 3], [8, 12]);
   }
+});
+
+test("what is static keeps its triangles", () => {
+  const { tables } = Recording.openNow(makeFixture({ frames: 2, columns: 4, courses: 2, tiles: 100 }).file);
+  const parts = makeParts(tables);
+  const fine: Triangles = { ...octahedron(1), triangles: new Uint32Array(300).map((_, i) => i % 6) };
+  const shapes = coarseShapes(
+    parts.map((part) => ({ ...part, form: fine })),
+    2,
+  );
+  assert.ok(parts.some(({ isStatic }) => isStatic) && parts.some(({ isStatic }) => !isStatic));
+  shapes.forEach((shape, i) => assert.equal(shape === fine, parts[i].isStatic));
 });
 
 test("coarse bodies stand where the fine ones stand", () => {
