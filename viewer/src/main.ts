@@ -3,7 +3,7 @@ import { RecordingError } from "./format/bytes";
 import { embeddedBytes, fetchedBytes, openInSlices } from "./load";
 import { Player } from "./player";
 import { probeDrawing } from "./scene/webgl";
-import { byId } from "./ui/dom";
+import { byId, make } from "./ui/dom";
 
 function showProgress(text: string, share: number | null): void {
   byId("loading").hidden = false;
@@ -21,13 +21,18 @@ function showError(title: string, text: string): void {
   document.body.classList.add("bare");
 }
 
-/** Shows a message beside the running player; a click hides it. */
-function showNote(text: string): void {
+const briefNoteMs = 8000;
+let noteTimer = 0;
+
+/** Shows a message beside the running player; what is in `backticks` is code. A click hides it; a brief one hides itself. */
+function showNote(text: string, isBrief = false): void {
   const note = byId("note");
-  note.textContent = text;
+  note.replaceChildren(...text.split("`").map((part, i) => (i % 2 ? make("code", part) : part)));
   note.hidden = false;
-  note.addEventListener("click", () => (note.hidden = true), { once: true });
+  window.clearTimeout(noteTimer);
+  if (isBrief) noteTimer = window.setTimeout(hideNote, briefNoteMs);
 }
+const hideNote = () => (byId("note").hidden = true);
 
 async function start(getBytes: () => Promise<Uint8Array>): Promise<void> {
   byId("error").hidden = true;
@@ -69,6 +74,7 @@ function openFile(file: File): void {
   void start(async () => new Uint8Array(await file.arrayBuffer()));
 }
 
+byId("note").addEventListener("click", hideNote);
 byId<HTMLInputElement>("open").addEventListener("change", (event) => {
   const file = (event.target as HTMLInputElement).files?.[0];
   if (file) openFile(file);

@@ -18,6 +18,8 @@ const prepareAhead = 40;
 const hashPauseMs = 400;
 /** how long a motion must have ended before a picture without savings is drawn, which may be slow */
 const settleMs = 150;
+const noContacts =
+  "This recording has no contact points. To record them, add `--contacts` to `fase run SCENE --record FILE`.";
 /** windows up to this width start without charts */
 const narrow = 720;
 
@@ -39,11 +41,11 @@ export class Player {
   private chartTimer = 0;
   private preparing = -1;
 
-  /** `onError` shows a message; the player continues. */
+  /** `onNote` shows a message; the player continues. */
   constructor(
     private readonly recording: Recording,
     isSoftware: boolean,
-    private readonly onError: (text: string) => void,
+    private readonly onNote: (text: string, isBrief?: boolean) => void,
   ) {
     const { tables, frameCount } = recording;
     const canvas = byId<HTMLCanvasElement>("scene");
@@ -55,7 +57,7 @@ export class Player {
     });
     this.quality = new Quality(this.view.coarserSteps, isSoftware ? this.view.softwareLevel : 0);
     this.playback = new Playback(frameCount, tables.timeStep > 0 ? tables.timeStep : 1 / 60, dirty);
-    this.idle = new IdleQueue((error) => this.onError((error as Error).message));
+    this.idle = new IdleQueue((error) => this.onNote((error as Error).message));
     this.charts = new Charts(tables, frameCount, (frame) => this.playback.seek(frame));
     this.panel = new BodyPanel(tables, {
       follow: () => this.follow(!this.isFollowing),
@@ -77,8 +79,8 @@ export class Player {
     this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
     this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
     if (!tables.hasContacts) {
-      byId<HTMLButtonElement>("contacts").disabled = true;
-      byId("contacts").title = "No contact points in this recording";
+      byId("contacts").dataset.missing = "true";
+      byId("contacts").title = noContacts.replaceAll("`", "");
     }
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -177,7 +179,7 @@ export class Player {
       this.showBody(frame);
     } catch (error) {
       playback.playing = false;
-      this.onError((error as Error).message);
+      this.onNote((error as Error).message);
       return;
     }
     this.drawn = playback.frame;
@@ -262,8 +264,8 @@ export class Player {
   }
 
   private press(id: string, act: (on: boolean) => void): void {
+    if (id === "contacts" && !this.recording.tables.hasContacts) return this.onNote(noContacts, true);
     const button = byId<HTMLButtonElement>(id);
-    if (button.disabled) return;
     const on = button.getAttribute("aria-pressed") !== "true";
     button.setAttribute("aria-pressed", String(on));
     act(on);
