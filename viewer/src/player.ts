@@ -5,7 +5,8 @@ import { byId, legendKey } from "./ui/dom";
 import { listenToKeys } from "./ui/keys";
 import { drawMarks } from "./ui/marks";
 import { listenToTaps } from "./ui/taps";
-import { readHash, writeHash } from "./hash";
+import { SwitchButton } from "./ui/switches";
+import { type PageState, readHash, type Switch, switches, writeHash } from "./hash";
 import { IdleQueue } from "./idle";
 import type { Frame, Selection } from "./model";
 import { Playback, speeds } from "./playback";
@@ -18,6 +19,8 @@ const prepareAhead = 40;
 const hashPauseMs = 400;
 /** how long a motion must have ended before a picture without savings is drawn, which may be slow */
 const settleMs = 150;
+/** so many pictures later, the browser has drawn the last change */
+const minStillTicks = 3;
 const noContacts =
   "This recording has no contact points. To record them, add `--contacts` to `fase run SCENE --record FILE`.";
 /** windows up to this width start without charts */
@@ -31,12 +34,14 @@ export class Player {
   private readonly panel: BodyPanel;
   private readonly scrub = byId<HTMLInputElement>("scrub");
   private readonly quality: Quality;
+  private readonly switches: Record<Switch, SwitchButton>;
   private isDirty = true;
   private wasMoving = false;
   private isFollowing = false;
   private drawn = -1;
   private lastTick = 0;
   private lastMotion = 0;
+  private stillTicks = 0;
   private hashTimer = 0;
   private chartTimer = 0;
   private preparing = -1;
@@ -65,17 +70,20 @@ export class Player {
     });
     document.title = `${tables.title || "recording"} – Fase`;
     this.scrub.max = String(frameCount - 1);
+    this.switches = {
+      boxes: new SwitchButton("boxes", (on) => (this.view.showsBoxes = on)),
+      contacts: new SwitchButton("contacts", (on) => (this.view.showsContacts = on)),
+      charts: new SwitchButton("chart-toggle", (on) => this.showCharts(on)),
+    };
     this.connect(canvas);
-    byId("charts").hidden = window.innerWidth <= narrow;
-    byId("chart-toggle").setAttribute("aria-pressed", String(!byId("charts").hidden));
     this.charts.draw(0);
+    this.switches.charts.on = window.innerWidth > narrow;
     this.resize();
     new ResizeObserver(() => this.publishDockHeight()).observe(byId("dock"));
     this.view.reframe();
     this.setColouring("material");
-    if (pageState.camera) this.view.camera.eyeAndTarget = pageState.camera;
-    if (pageState.frame !== null) this.playback.seek(pageState.frame);
-    else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
+    this.apply(pageState);
+    if (pageState.frame === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.playback.toggle();
     this.idle.add(recording.readSummaries(this.charts.summaries), { done: () => this.refreshCharts() });
     this.chartTimer = window.setInterval(() => this.refreshCharts(), 250);
     if (!tables.hasContacts) {
@@ -97,9 +105,9 @@ export class Player {
       toEnd: (last: boolean) => playback.seek(last ? playback.last : 0),
       faster: (steps: number) => playback.faster(steps),
       nextColours: () => this.setColouring(colourings[(colourings.indexOf(view.colouring) + 1) % colourings.length]),
-      toggleBoxes: () => this.press("boxes", (on) => (view.showsBoxes = on)),
-      toggleContacts: () => this.press("contacts", (on) => (view.showsContacts = on)),
-      toggleCharts: () => this.press("chart-toggle", (on) => this.showCharts(on)),
+      toggleBoxes: () => this.press("boxes"),
+      toggleContacts: () => this.press("contacts"),
+      toggleCharts: () => this.press("charts"),
       togglePanels: () => this.togglePanels(),
       follow: () => this.follow(!this.isFollowing),
       reframe: () => {
@@ -107,6 +115,7 @@ export class Player {
         view.reframe();
         this.invalidate();
       },
+      copyLink: () => void this.copyLink(),
       deselect: () => this.select(null),
       help: () => (help.open ? help.close() : help.showModal()),
     };
@@ -117,6 +126,7 @@ export class Player {
     click("contacts", commands.toggleContacts);
     click("chart-toggle", commands.toggleCharts);
     click("reframe", commands.reframe);
+    click("link", commands.copyLink);
     click("panels", commands.togglePanels);
     click("show-panels", commands.togglePanels);
     click("help-open", commands.help);
@@ -133,18 +143,13 @@ export class Player {
     this.scrub.addEventListener("input", () => playback.seek(Number(this.scrub.value)));
     window.addEventListener("resize", () => this.resize());
     document.addEventListener("visibilitychange", () => (this.wasMoving = false));
-    window.addEventListener("hashchange", () => {
-      const pageState = readHash(location.hash);
-      if (pageState.camera) view.camera.eyeAndTarget = pageState.camera;
-      if (pageState.frame === null) return;
-      playback.playing = false;
-      playback.seek(pageState.frame);
-    });
+    window.addEventListener("hashchange", () => this.apply(readHash(location.hash)));
   }
 
   private invalidate(): void {
     this.isDirty = true;
     this.drawn = -1;
+    document.documentElement.dataset.still = "false";
     this.saveHash();
   }
 
@@ -157,8 +162,10 @@ export class Player {
     const isMoving = this.isDirty;
     if (isMoving) this.lastMotion = now;
     const isSettled = now - this.lastMotion > settleMs;
-    state.still = String(!isMoving && !this.view.isCoarse);
-    if (!isMoving && !(this.view.isCoarse && isSettled)) {
+    const isStill = !isMoving && !this.view.isCoarse;
+    this.stillTicks = isStill ? this.stillTicks + 1 : 0;
+    state.still = String(this.stillTicks >= minStillTicks);
+    if (isStill || (!isMoving && !isSettled)) {
       this.wasMoving = false;
       return;
     }
@@ -263,12 +270,9 @@ export class Player {
     this.invalidate();
   }
 
-  private press(id: string, act: (on: boolean) => void): void {
-    if (id === "contacts" && !this.recording.tables.hasContacts) return this.onNote(noContacts, true);
-    const button = byId<HTMLButtonElement>(id);
-    const on = button.getAttribute("aria-pressed") !== "true";
-    button.setAttribute("aria-pressed", String(on));
-    act(on);
+  private press(name: Switch): void {
+    if (name === "contacts" && !this.recording.tables.hasContacts) return this.onNote(noContacts, true);
+    this.switches[name].on = !this.switches[name].on;
     this.invalidate();
   }
 
@@ -300,8 +304,48 @@ export class Player {
     window.clearTimeout(this.hashTimer);
     this.hashTimer = window.setTimeout(() => {
       if (this.playback.playing) return this.saveHash();
-      const hash = writeHash({ frame: this.playback.frame, camera: this.view.camera.eyeAndTarget });
-      history.replaceState(null, "", hash);
+      history.replaceState(null, "", writeHash(this.pageState));
     }, hashPauseMs);
+  }
+
+  private get pageState(): PageState {
+    return {
+      frame: this.playback.frame,
+      camera: this.view.camera.eyeAndTarget,
+      selection: this.view.selected ?? "none",
+      colouring: this.view.colouring,
+      shown: switches.filter((name) => this.switches[name].on),
+    };
+  }
+
+  /** Shows what the address says; what it does not say, or says for another recording, stays as it is. */
+  private apply({ frame, camera, selection, colouring, shown }: PageState): void {
+    const { bodies, hasContacts } = this.recording.tables;
+    if (shown)
+      for (const name of switches)
+        this.switches[name].on = shown.includes(name) && (name !== "contacts" || hasContacts);
+    if (colouring) this.setColouring(colouring);
+    if (selection === "none") this.select(null);
+    else if (selection && (selection.shape ?? 0) < (bodies[selection.body]?.colliders.length ?? 0)) this.select(selection);
+    if (camera) {
+      this.follow(false);
+      this.view.camera.eyeAndTarget = camera;
+    }
+    if (frame !== null) {
+      this.playback.playing = false;
+      this.playback.seek(frame);
+    }
+    this.invalidate();
+  }
+
+  /** Copies a link to this picture; without access to the clipboard, it stays in the address of the page. */
+  private async copyLink(): Promise<void> {
+    history.replaceState(null, "", writeHash(this.pageState));
+    try {
+      await navigator.clipboard.writeText(location.href);
+      this.onNote("Copied a link to this picture.", true);
+    } catch {
+      this.onNote("The address of this page is the link to this picture; copy it from there.", true);
+    }
   }
 }

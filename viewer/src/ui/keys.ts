@@ -13,6 +13,7 @@ export interface Commands {
   togglePanels(): void;
   follow(): void;
   reframe(): void;
+  copyLink(): void;
   deselect(): void;
   help(): void;
 }
@@ -48,6 +49,7 @@ function actions(commands: Commands, shift: boolean): Record<string, () => void>
     h: commands.togglePanels,
     f: commands.follow,
     r: commands.reframe,
+    l: commands.copyLink,
     Escape: commands.deselect,
     "?": commands.help,
   };

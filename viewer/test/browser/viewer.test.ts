@@ -13,6 +13,13 @@ import { buildPage, findBrowser, saveScreenshot, launch, PageServer, type Visit,
 const skip = findBrowser() ? false : "skipped: no chromium on this system";
 const real = process.env.FASE_RECORDING;
 const fixture = makeFixture({ frames: 240 }).file;
+const level = makeFixture({ frames: 40, columns: 8, courses: 6, tiles: 1280 }).file;
+const phone: BrowserContextOptions = {
+  viewport: { width: 375, height: 800 },
+  hasTouch: true,
+  isMobile: true,
+  deviceScaleFactor: 2,
+};
 
 const frameOf = (page: Page) => page.evaluate(() => Number(document.documentElement.dataset.frame));
 const waitForFrame = (page: Page, frame: number) =>
@@ -52,6 +59,7 @@ interface ViewerWindow {
       saved: { share: number; shadows: boolean; coarser: number };
       poses: { positions: Float64Array };
       camera: { distance: number };
+      pickAt(x: number, y: number): { body: number; shape: number | null } | null;
       project(p: number[]): { x: number; y: number };
     };
   };
@@ -60,6 +68,18 @@ interface ViewerWindow {
 /** Returns the distance of the camera from its target, in metres. */
 const distanceOf = (page: Page) =>
   page.evaluate(() => (window as unknown as ViewerWindow).fase.view.camera.distance);
+
+/** Returns a shape of the body "level" that no panel covers, and where it is in the window. */
+const visibleTile = (page: Page) =>
+  page.evaluate(() => {
+    const { view } = (window as unknown as ViewerWindow).fase;
+    for (let y = 340; y > 120; y -= 7)
+      for (let x = 60; x < 740; x += 11) {
+        const picked = view.pickAt(x, y);
+        if (picked && picked.shape !== null && picked.shape > 8) return { shape: picked.shape, x, y };
+      }
+    throw new Error("no tile is visible");
+  });
 
 /** Returns the window position of a body. */
 const positionOf = (page: Page, name: string) =>
@@ -318,6 +338,108 @@ describe("the viewer in a browser", { skip }, () => {
     await finish(visited);
   });
 
+  test("a link restores frame, camera, selection, colours and switches; broken links change nothing", async () => {
+    const visited = await open({ file: level, hash: "#f=20" });
+    const { page } = visited;
+    await page.waitForSelector("html[data-charts=complete]");
+    await page.selectOption("#colours", "kind");
+    await page.click("#boxes");
+    await page.keyboard.press("g");
+    await page.mouse.move(400, 200);
+    await page.mouse.down();
+    await page.mouse.move(460, 240, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForSelector("html[data-still=true]");
+    const { shape, x, y } = await visibleTile(page);
+    await page.mouse.click(x, y);
+    await page.waitForSelector("#body:not([hidden])");
+    const words = `number ${(shape + 1).toLocaleString("en-GB")} of 1,280`;
+    assert.ok((await text(page, "#body-state")).includes(words), words);
+    await page.mouse.move(400, 200);
+    const shown = await pixels(page);
+    await saveScreenshot(page, "picked-shape");
+    await page.waitForFunction((n) => /by=kind/.test(location.hash) && location.hash.includes(`:${n}&`), shape + 1);
+    const hash = await page.evaluate(() => location.hash);
+    const again = await open({ file: level, hash });
+    const other = again.page;
+    await other.waitForFunction(() => document.documentElement.dataset.frame === "20");
+    assert.ok(changed(shown, await pixels(other)) < 0.004, "a new page shows the same");
+    assert.ok((await text(other, "#body-state")).includes(words), words);
+    assert.equal(await other.isVisible("#charts"), false);
+    assert.equal(await other.getAttribute("#boxes", "aria-pressed"), "true");
+    for (const broken of ["#f=x&c=1,2&p=99999:3&by=pink&nothing", "#p=0:77&c=0,0,0,0,0,0", "#%%%"]) {
+      await other.evaluate((text) => (location.hash = text), broken);
+      assert.ok(changed(shown, await pixels(other)) < 0.004, broken);
+    }
+    await other.evaluate(() => (location.hash = "#f=3&p=none&by=material&show=charts"));
+    await waitForFrame(other, 3);
+    assert.equal(await other.isVisible("#body"), false);
+    assert.ok(await other.isVisible("#charts"));
+    await other.evaluate((text) => (location.hash = text), hash);
+    await waitForFrame(other, 20);
+    assert.ok(changed(shown, await pixels(other)) < 0.004, "so does an open page");
+    await finish(again);
+    await finish(visited);
+  });
+
+  test("the link button copies the address of the picture, also while it plays", async () => {
+    const visited = await open({ context: { permissions: ["clipboard-read", "clipboard-write"] } });
+    const { page } = visited;
+    await waitForMore(page, 3);
+    await page.click("#link");
+    await page.waitForSelector("#note:not([hidden])");
+    assert.match(await text(page, "#note"), /Copied/);
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    assert.ok(copied.startsWith(`${server.url}#f=`) && /&c=.*&p=none&by=material&show=charts$/.test(copied), copied);
+    await page.click("#note");
+    assert.equal(await page.isVisible("#note"), false);
+    await finish(visited);
+  });
+
+  test("the contacts button of a recording without contacts says how to record them", async () => {
+    const file = makeFixture({ frames: 10, contacts: false }).file;
+    for (const context of [{}, phone]) {
+      const visited = await open({ file, hash: "#f=5", context });
+      const { page } = visited;
+      if (context === phone) await page.tap("#contacts");
+      else await page.click("#contacts");
+      await page.waitForSelector("#note:not([hidden])");
+      assert.match(await text(page, "#note"), /no contact points.*--contacts/);
+      assert.equal(await page.getAttribute("#contacts", "aria-pressed"), "false");
+      await saveScreenshot(page, context === phone ? "phone-contacts" : "contacts-missing");
+      await finish(visited);
+    }
+  });
+
+  test("on a phone legends wrap within the screen, and help begins with touch", async () => {
+    const visited = await open({ hash: "#f=20&show=charts&by=island", context: phone });
+    const { page } = visited;
+    await pixels(page);
+    const outside = await page.evaluate(() =>
+      [...document.querySelectorAll(".key, figcaption > *, #tools > *, #transport > *")]
+        .map((element) => ({ text: element.textContent, box: element.getBoundingClientRect() }))
+        .filter(({ box }) => box.width > 0 && (box.left < 0 || box.right > innerWidth || box.bottom > innerHeight))
+        .map(({ text }) => text),
+    );
+    assert.deepEqual(outside, []);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), true);
+    await saveScreenshot(page, "phone-charts");
+    await page.tap("#help-open");
+    const tops = await page.evaluate(() =>
+      ["help-touch", "help-mouse", "help-keys"].map((id) => document.getElementById(id)?.getBoundingClientRect().top ?? 0),
+    );
+    assert.ok(tops[0] < tops[1] && tops[1] < tops[2]);
+    await saveScreenshot(page, "phone-help");
+    await finish(visited);
+    const desk = await open({ hash: "#f=20" });
+    await desk.page.keyboard.press("?");
+    assert.ok(await desk.page.evaluate(() => {
+      const top = (id: string) => document.getElementById(id)?.getBoundingClientRect().top ?? 0;
+      return top("help-touch") > top("help-keys");
+    }));
+    await finish(desk);
+  });
+
   test("panels can be hidden and shown; help opens and closes", async () => {
     const visited = await open({ hash: "#f=200" });
     const { page } = visited;
@@ -335,18 +457,12 @@ describe("the viewer in a browser", { skip }, () => {
   });
 
   test("on a phone all controls fit, a tap picks, one finger rotates, two fingers zoom", async () => {
-    const context: BrowserContextOptions = {
-      viewport: { width: 390, height: 780 },
-      hasTouch: true,
-      isMobile: true,
-      deviceScaleFactor: 2,
-    };
-    const visited = await open({ hash: "#f=20", context });
+    const visited = await open({ hash: "#f=20", context: phone });
     const { page } = visited;
     await waitForFrame(page, 20);
-    for (const id of ["head", "tools", "dock", "play", "scrub", "speed", "help-open"]) {
+    for (const id of ["head", "tools", "dock", "play", "scrub", "speed", "link", "help-open"]) {
       const box = await page.locator(`#${id}`).boundingBox();
-      assert.ok(box && box.x >= 0 && box.y >= 0 && box.x + box.width <= 390 && box.y + box.height <= 780, id);
+      assert.ok(box && box.x >= 0 && box.y >= 0 && box.x + box.width <= 375 && box.y + box.height <= 800, id);
     }
     await saveScreenshot(page, "phone");
     const { x, y } = await positionOf(page, "ball");

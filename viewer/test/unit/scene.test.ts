@@ -1,7 +1,7 @@
 /** Tests of picking, world boxes, interpolation and playback, without drawing. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { readHash, writeHash } from "../../src/hash";
+import { type PageState, readHash, writeHash } from "../../src/hash";
 import type { Vec3 } from "../../src/model";
 import { Playback } from "../../src/playback";
 import { Recording } from "../../src/recording";
@@ -130,11 +130,35 @@ test("steps and seeks stay within the recording", () => {
   assert.equal(playback.speed, 0.1);
 });
 
-test("frame and camera round-trip through the address", () => {
-  const place = { frame: 120, camera: [1.5, -2, 3.25, 0, 0.125, 1e6] };
-  assert.deepEqual(readHash(writeHash(place)), place);
-  assert.deepEqual(readHash("#f=-3&c=1,2,x"), { frame: null, camera: null });
-  assert.deepEqual(readHash(""), { frame: null, camera: null });
+test("everything that is shown round-trips through the address", () => {
+  const state: PageState = {
+    frame: 120,
+    camera: [1.5, -2, 3.25, 0, 0.125, 1e6],
+    selection: { body: 7, shape: 1203 },
+    colouring: "island",
+    shown: ["boxes", "charts"],
+  };
+  assert.deepEqual(readHash(writeHash(state)), state);
+  for (const selection of ["none", { body: 0, shape: null }, { body: 3, shape: 0 }] as const)
+    assert.deepEqual(readHash(writeHash({ ...state, selection })).selection, selection);
+  for (const shown of [[], ["contacts"], ["boxes", "contacts", "charts"]] as PageState["shown"][])
+    assert.deepEqual(readHash(writeHash({ ...state, shown })).shown, shown);
+});
+
+test("an address that says nothing, or nothing valid, changes nothing", () => {
+  const nothing = { frame: null, camera: null, selection: null, colouring: null, shown: null };
+  assert.deepEqual(readHash(""), nothing);
+  for (const hash of [
+    "#f=-3&c=1,2,x&p=&by=pink",
+    "#f=1.5&c=1,2,3,4,5&p=x&by=",
+    "#f=&c=0,0,0,0,0,0&p=3:0",
+    "#f=9e99&c=,,,,,&p=1:2:3",
+    "#f=0x10&p=-1&c=1,2,3,4,5,Infinity&by=constructor",
+    "#%E0%A4%A&nonsense&=&f",
+  ])
+    assert.deepEqual(readHash(hash), nothing, hash);
+  assert.deepEqual(readHash("#show=charts,pink,boxes").shown, ["boxes", "charts"]);
+  assert.equal(readHash("#c=1,x&f=12").frame, 12, "the rest of a broken address counts");
 });
 
 test("of a body with many shapes, the one that was hit is picked, outlined and named", () => {
