@@ -39,7 +39,8 @@ test("where pixels are slow, moving pictures have fewer of them, and the rest st
 });
 
 test("where shapes are slow, shadows and detail are left out until five pictures a second are drawn", () => {
-  const cost = ({ share, shadows, coarser }: Quality["saving"]) => 400 * share * share + (shadows ? 2 : 1) * (1500 / 4 ** coarser);
+  const cost = ({ share, shadows, coarser }: Quality["saving"]) =>
+    400 * share * share + ((shadows ? 2 : 1) * 1500) / 4 ** coarser;
   for (const level of [0, 2]) {
     const quality = new Quality(3, level);
     const last = play(quality, 20, cost);
