@@ -28,7 +28,9 @@ function(fase_own_code target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
                                            $<$<BOOL:${FASE_WERROR}>:-Werror> -ffp-contract=off
                                            # g++ 12 fuses in its SLP vectoriser, whatever -ffp-contract says, where FMA is on.
-                                           $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+                                           $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>
+                                           # g++ takes longer when it collects its garbage from 128 MB on.
+                                           $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
 endfunction()
 
 # Parses `header` once for all sources of a target.
