@@ -1,6 +1,7 @@
 #pragma once
 /// The facts that `fase info` prints about a file: named texts, numbers, lists and counts.
 #include <fmt/format.h>
+#include <cstddef>
 
 #include <map>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
 /// Output that all commands share: exit codes, error lines, text that is safe to print, checks of output files.
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>

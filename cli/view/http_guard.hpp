@@ -1,5 +1,6 @@
 #pragma once
 /// Checks the head of an HTTP request before any other code reads it.
+#include <cstddef>
 #include <string>
 #include <string_view>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A browser's connection with time limits, in the form that cpp-httplib reads and writes.
 #include <httplib.h>
+#include <cstddef>
 
 #include <chrono>
 #include <string>

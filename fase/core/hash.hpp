@@ -1,6 +1,7 @@
 #pragma once
 /// A stable 64-bit hash: the same bytes give the same number on every machine and in every version.
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>

@@ -1,6 +1,7 @@
 #pragma once
 /// Generational ids: stale, foreign and random ids are detected.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>

@@ -1,5 +1,6 @@
 #pragma once
 /// Generates traces: workloads that show the differences between broad phases.
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>

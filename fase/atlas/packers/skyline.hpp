@@ -1,5 +1,6 @@
 #pragma once
 /// Fills a page along a skyline: always places the rectangle that fits the lowest gap best.
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

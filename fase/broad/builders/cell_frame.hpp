@@ -1,5 +1,6 @@
 #pragma once
 /// Quantization of space for trees of cells: integer steps on each split axis, and the boxes of cells.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>

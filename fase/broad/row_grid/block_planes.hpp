@@ -1,6 +1,7 @@
 #pragma once
 /// A tree of planes that partitions space into numbered cells.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
 /// Maps coordinates to the cells of an unbounded grid.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "fase/geometry/aabb.hpp"

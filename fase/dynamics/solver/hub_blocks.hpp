@@ -1,6 +1,7 @@
 #pragma once
 /// Packs the contacts of hubs into blocks. A hub is a body with more contacts than there are colours.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #pragma once
 /// Islands: sets of bodies that are connected by contacts.
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

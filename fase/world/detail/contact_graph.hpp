@@ -2,6 +2,7 @@
 /// The contacts of each collider as linked lists, so that edits, wakes and sleeps cost their own contacts only.
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
