@@ -16,6 +16,13 @@ template <class... S> struct VariantOf<StructureList<S...>> { using type = std::
 
 struct AnyStructure::Held {
     VariantOf<AllStructures>::type structure;
+
+    /// All stored boxes, in the structure's order.
+    [[nodiscard]] std::vector<Move> boxes() const {
+        std::vector<Move> all;
+        std::visit([&](const auto& s) { stored_boxes(s, all); }, structure);
+        return all;
+    }
 };
 
 Result<AnyStructure> AnyStructure::named(std::string_view name) {
@@ -202,29 +209,21 @@ void AnyStructure::find_pairs_between(TaskRunner& tasks, const AnyStructure& oth
     if (size() == 0 || other.size() == 0) return;
     if (tasks.threads() == 1) return find_pairs_between(other, out);
     const bool is_smaller = size() < other.size();
-    std::vector<Move> query_boxes;
-    std::visit([&](const auto& s) { stored_boxes(s, query_boxes); },
-               is_smaller ? held_->structure : other.held_->structure);
-    (is_smaller ? other : *this).find_pairs_of(tasks, query_boxes, {}, out);
+    (is_smaller ? other : *this).find_pairs_of(tasks, (is_smaller ? *this : other).held_->boxes(), {}, out);
 }
 
 void AnyStructure::find_pairs_between(const AnyStructure& other, std::vector<Pair>& out) const {
-    std::visit(
-        [&]<class S>(const S& mine) {
-            if (const S* same_type = std::get_if<S>(&other.held_->structure)) {
-                broad::find_pairs_between(mine, *same_type, out);
-                return;
-            }
-            std::vector<Move> query_boxes;
-            if (size() > other.size()) {
-                std::visit([&](const auto& theirs) { stored_boxes(theirs, query_boxes); }, other.held_->structure);
-                broad::find_pairs_of(mine, query_boxes, {}, out);
-            } else {
-                stored_boxes(mine, query_boxes);
-                other.find_pairs_of(query_boxes, out);
-            }
-        },
-        held_->structure);
+    if (held_->structure.index() == other.held_->structure.index()) {
+        std::visit(
+            [&]<class S>(const S& mine) {
+                broad::find_pairs_between(mine, *std::get_if<S>(&other.held_->structure), out);
+            },
+            held_->structure);
+    } else if (size() > other.size()) {
+        find_pairs_of(other.held_->boxes(), out);
+    } else {
+        other.find_pairs_of(held_->boxes(), out);
+    }
 }
 
 void AnyStructure::overlapping(const Aabb& box, std::vector<Proxy>& out) const {
