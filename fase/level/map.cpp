@@ -13,12 +13,6 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-std::string name_at(Bytes bytes, std::size_t at) {
-    std::string name;
-    for (std::size_t i = at; i < at + 8 && bytes[i] != std::byte{0}; ++i) name += static_cast<char>(bytes[i]);
-    return name;
-}
-
 /// Reads lumps of one map; keeps the first error.
 class Reader {
 public:
@@ -125,12 +119,12 @@ Result<Map> read_map(const std::string& name, const Wad& wad, std::string_view m
     });
     reader.each("VERTEXES", 4, [&](Bytes b) { map.vertices.push_back({read_i16(b, 0), read_i16(b, 2)}); });
     reader.each("SECTORS", 26, [&](Bytes b) {
-        map.sectors.push_back({read_i16(b, 0), read_i16(b, 2), name_at(b, 4), name_at(b, 12), read_i16(b, 20),
+        map.sectors.push_back({read_i16(b, 0), read_i16(b, 2), read_name(b, 4), read_name(b, 12), read_i16(b, 20),
                                read_u16(b, 22), read_u16(b, 24)});
     });
     reader.each("SIDEDEFS", 30, [&](Bytes b) {
         map.sides.push_back(
-            {read_i16(b, 0), read_i16(b, 2), name_at(b, 4), name_at(b, 12), name_at(b, 20), read_u16(b, 28)});
+            {read_i16(b, 0), read_i16(b, 2), read_name(b, 4), read_name(b, 12), read_name(b, 20), read_u16(b, 28)});
     });
     reader.each("LINEDEFS", 14, [&](Bytes b) {
         map.lines.push_back({read_u16(b, 0), read_u16(b, 2), read_u16(b, 4), read_u16(b, 6), read_u16(b, 8),

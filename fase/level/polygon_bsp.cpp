@@ -15,22 +15,22 @@ constexpr std::size_t stack_depth = 160;
 double side(const PolygonBsp::CutPlane& plane, Vec3d point) { return dot(plane.normal, point) - plane.offset; }
 
 /// An interval of a ray, in metres.
-struct Interval {
+struct RayPart {
     double from = 0, to = 0;
     [[nodiscard]] bool empty() const { return !(from <= to); }
 };
 
 /// Clips an interval to the values t for which s + r * t is at least `low`.
-Interval at_least(double low, double s, double r, Interval part) {
-    if (r == 0) return s >= low ? part : Interval{1, 0};
+RayPart at_least(double low, double s, double r, RayPart part) {
+    if (r == 0) return s >= low ? part : RayPart{1, 0};
     const double t = (low - s) / r;
     if (r > 0) return {std::max(part.from, t), part.to};
     return {part.from, std::min(part.to, t)};
 }
 
 /// Returns the part of a ray inside a box.
-Interval within(Vec3d origin, Vec3d direction, Vec3d lo, Vec3d hi, double max_distance) {
-    Interval part{0, max_distance};
+RayPart within(Vec3d origin, Vec3d direction, Vec3d lo, Vec3d hi, double max_distance) {
+    RayPart part{0, max_distance};
     for (int axis = 0; axis < 3; ++axis) {
         part = at_least(lo[axis], origin[axis], direction[axis], part);
         part = at_least(-hi[axis], -origin[axis], -direction[axis], part);
@@ -60,13 +60,13 @@ template <class Test> void PolygonBsp::walk_ray(Vec3d origin, Vec3d direction, d
     const double extent = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
     const double slack = 4 * thickness_ + extent * 0x1p-46;
     const Vec3d margin{slack, slack, slack};
-    const Interval all = within(origin, direction, lo_ - margin, hi_ + margin, max_distance);
+    const RayPart all = within(origin, direction, lo_ - margin, hi_ + margin, max_distance);
     if (all.empty()) return;
     const Vec3d start = origin + direction * all.from;
 
     struct Task {
         std::uint32_t child;
-        Interval part;
+        RayPart part;
     };
     broad::LocalStack<Task, stack_depth> stack;
     const double length = all.to - all.from;
@@ -86,7 +86,7 @@ template <class Test> void PolygonBsp::walk_ray(Vec3d origin, Vec3d direction, d
             }
             const Node& node = nodes_[task.child];
             const double s = side(node.plane, start), r = dot(node.plane.normal, direction);
-            const Interval front = at_least(-slack, s, r, task.part), back = at_least(-slack, -s, -r, task.part);
+            const RayPart front = at_least(-slack, s, r, task.part), back = at_least(-slack, -s, -r, task.part);
             if (!front.empty() && !back.empty()) {
                 // The intervals overlap where the ray is inside the slab around the plane.
                 if (std::max(front.from, back.from) <= std::min(front.to, back.to)) test_all(node.first, node.pieces);

@@ -14,17 +14,10 @@
 namespace fase::level {
 namespace {
 
-constexpr std::size_t header_bytes = 12, entry_bytes = 16, name_bytes = 8;
+constexpr std::size_t header_bytes = 12, entry_bytes = 16;
 
 Error at_byte(const std::string& name, std::size_t byte, std::string problem) {
     return {Status::Format, detail::at_byte(name, byte), std::move(problem), {}};
-}
-
-std::string name_at(std::span<const std::byte> bytes, std::size_t at) {
-    std::string name;
-    for (std::size_t i = 0; i < name_bytes && bytes[at + i] != std::byte{0}; ++i)
-        name += static_cast<char>(bytes[at + i]);
-    return name;
 }
 
 bool same_name(std::string_view a, std::string_view b) {
@@ -60,7 +53,7 @@ Result<Wad> Wad::parse(const std::string& name, std::span<const std::byte> bytes
     for (std::int64_t i = 0; i < count; ++i) {
         const auto entry = static_cast<std::size_t>(directory) + static_cast<std::size_t>(i) * entry_bytes;
         const std::int64_t at = read_i32(bytes, entry), length = read_i32(bytes, entry + 4);
-        const std::string lump = name_at(bytes, entry + 8);
+        const std::string lump = read_name(bytes, entry + 8);
         if (length < 0)
             return at_byte(name, entry + 4, fmt::format("found lump {} of {} bytes; expected 0 or more", i, length));
         if (length > 0 && (at < 0 || at > size || length > size - at)) {

@@ -12,7 +12,7 @@ namespace {
 constexpr int max_bins = 32;
 
 /// Boxes that begin, or end, in one bin or in a range of bins.
-struct Bin {
+struct SideBin {
     Aabb box;
     std::size_t count = 0;
     void add(const Aabb& added, std::size_t added_count) {
@@ -20,14 +20,14 @@ struct Bin {
         count += added_count;
     }
 };
-using Bins = std::array<Bin, max_bins>;
+using SideBins = std::array<SideBin, max_bins>;
 
 double cost_of(const Aabb& box, std::size_t count) {
     return count == 0 ? 0 : static_cast<double>(count) * static_cast<double>(box_cost(box));
 }
 
 /// Evenly spaced bins on an axis. A box that ends on a border ends in the bin before it.
-struct Binning {
+struct SideBinning {
     int axis = 0, bins = 0;
     float first = 0, bins_per_metre = 0;
 
@@ -44,32 +44,32 @@ struct Binning {
     }
 };
 
-void try_axis(const Binning& binning, std::span<const Move> boxes, const Aabb& bounds,
+void try_axis(const SideBinning& binning, std::span<const Move> boxes, const Aabb& bounds,
               std::optional<SurfacePlane>& best) {
     const auto bins = static_cast<std::size_t>(binning.bins);
     const int axis = binning.axis;
-    Bins begin{}, end{};
+    SideBins begin{}, end{};
     for (const Move& m : boxes) {
         begin[binning.begin_of(m.box)].add(m.box, 1);
         end[binning.end_of(m.box)].add(m.box, 1);
     }
-    Bins ends_from;  // [i]: boxes that end in bin i or later
-    Bin sum;
+    SideBins ends_from;  // [i]: boxes that end in bin i or later
+    SideBin sum;
     for (std::size_t i = bins; i-- > 0;) {
         sum.add(end[i].box, end[i].count);
         ends_from[i] = sum;
     }
-    Bins begins_from;  // [i]: boxes that begin in bin i or later
+    SideBins begins_from;  // [i]: boxes that begin in bin i or later
     sum = {};
     for (std::size_t i = bins; i-- > 0;) {
         sum.add(begin[i].box, begin[i].count);
         begins_from[i] = sum;
     }
-    Bin below, begun;
+    SideBin below, begun;
     for (std::size_t cut = 1; cut < bins; ++cut) {
         below.add(end[cut - 1].box, end[cut - 1].count);
         begun.add(begin[cut - 1].box, begin[cut - 1].count);
-        const Bin& above = begins_from[cut];
+        const SideBin& above = begins_from[cut];
         const std::size_t straddling = boxes.size() - below.count - above.count;
         if (std::max({below.count, above.count, straddling}) == boxes.size()) continue;
         Aabb slab = bounds;  // straddling boxes begin before the cut and end after it

@@ -1,10 +1,10 @@
 /// Tessellation of surfaces of revolution.
 #include "fase/geometry/detail/lathe.hpp"
 
+#include "fase/geometry/detail/solid.hpp"
+
 namespace fase::detail {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// A point in the plane.
 struct Point2 {

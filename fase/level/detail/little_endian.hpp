@@ -1,14 +1,15 @@
 #pragma once
-/// Reads and writes numbers of WAD files: little-endian, two's complement.
+/// Reads and writes numbers and names of WAD files: little-endian, two's complement.
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace fase::level {
 
-/// Precondition of all read functions: the number at offset `at` is inside `bytes`.
+/// Precondition of all read functions: the number, or name, at offset `at` is inside `bytes`.
 [[nodiscard]] constexpr std::uint16_t read_u16(std::span<const std::byte> bytes, std::size_t at) {
     return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[at]) | std::to_integer<unsigned>(bytes[at + 1])
                                                                                  << 8);
@@ -21,6 +22,12 @@ namespace fase::level {
 }
 [[nodiscard]] constexpr std::int32_t read_i32(std::span<const std::byte> bytes, std::size_t at) {
     return static_cast<std::int32_t>(read_u32(bytes, at));
+}
+/// The name of at most eight bytes, up to the first zero.
+[[nodiscard]] inline std::string read_name(std::span<const std::byte> bytes, std::size_t at) {
+    std::string name;
+    for (std::size_t i = at; i < at + 8 && bytes[i] != std::byte{0}; ++i) name += static_cast<char>(bytes[i]);
+    return name;
 }
 
 inline void append_u16(std::vector<std::byte>& out, std::uint16_t value) {

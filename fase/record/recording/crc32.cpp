@@ -6,10 +6,10 @@
 namespace fase::record {
 namespace {
 
-using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
+using CrcTables = std::array<std::array<std::uint32_t, 256>, 8>;
 
-constexpr Tables make_tables() {
-    Tables tables{};
+constexpr CrcTables make_crc_tables() {
+    CrcTables tables{};
     for (std::uint32_t i = 0; i < 256; ++i) {
         std::uint32_t value = i;
         for (int bit = 0; bit < 8; ++bit) value = (value >> 1) ^ ((value & 1) != 0 ? 0xedb88320u : 0);
@@ -22,7 +22,7 @@ constexpr Tables make_tables() {
     }
     return tables;
 }
-constexpr Tables tables = make_tables();
+constexpr CrcTables crc_tables = make_crc_tables();
 
 }  // namespace
 
@@ -32,10 +32,11 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
     std::size_t i = 0;
     for (; i + 8 <= bytes.size(); i += 8) {
         const std::uint32_t low = crc ^ (at(i) | at(i + 1) << 8 | at(i + 2) << 16 | at(i + 3) << 24);
-        crc = tables[7][low & 255] ^ tables[6][(low >> 8) & 255] ^ tables[5][(low >> 16) & 255] ^ tables[4][low >> 24] ^
-              tables[3][at(i + 4)] ^ tables[2][at(i + 5)] ^ tables[1][at(i + 6)] ^ tables[0][at(i + 7)];
+        crc = crc_tables[7][low & 255] ^ crc_tables[6][(low >> 8) & 255] ^ crc_tables[5][(low >> 16) & 255] ^
+              crc_tables[4][low >> 24] ^ crc_tables[3][at(i + 4)] ^ crc_tables[2][at(i + 5)] ^
+              crc_tables[1][at(i + 6)] ^ crc_tables[0][at(i + 7)];
     }
-    for (; i < bytes.size(); ++i) crc = (crc >> 8) ^ tables[0][(crc ^ at(i)) & 255];
+    for (; i < bytes.size(); ++i) crc = (crc >> 8) ^ crc_tables[0][(crc ^ at(i)) & 255];
     return ~crc;
 }
 
