@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "fase/broad/brute_force.hpp"
+#include "fase/broad/dynamic_bvh.hpp"
 #include "fase/core/random.hpp"
 #include "fase/geometry/bounds.hpp"
 #include "fase/narrow/dispatch.hpp"

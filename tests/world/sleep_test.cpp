@@ -399,7 +399,7 @@ Vec3d build_plank_tower(World& world) {
     return {0, 4.3, 0};
 }
 TEST(Sleep, a_rocking_stone_keeps_awake_only_what_it_may_move) {
-    for (const Building& building : {Building{"pyramid", build_pyramid, 2}, Building{"wall", build_wall, 2},
+    for (const Building& building : {Building{"pyramid", build_pyramid, 2}, Building{"wall", build_wall, 3},
                                      Building{"block", build_block, 2}, Building{"planks", build_plank_tower, 8}}) {
         World world = make_world();
         add_ground(world);

@@ -1,6 +1,7 @@
 #pragma once
 /// The colours of constraints: those of one colour share no body that they move, so they can be solved in parallel.
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
