@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <new>
 #include <set>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/clock.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
 #include "cli/sprite_files.hpp"
@@ -75,9 +75,9 @@ Result<atlas::PackOptions> pack_options_of(const AtlasCommand& command) {
 Result<Figures> pack_rectangles(const AtlasCommand& command, const atlas::PackOptions& options) {
     const Result<std::vector<atlas::Size>> sizes = read_rectangles(command.rects);
     if (!sizes) return sizes.error();
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const Result<atlas::Packing> packing = atlas::pack(*sizes, options);
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double ms = ms_since(start);
     if (!packing) {
         Error error = packing.error();
         error.where = command.rects + ": " + error.where;

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "bench/pairs.hpp"
+#include "cli/common/clock.hpp"
 #include "cli/common/output.hpp"
 #include "cli/query_set.hpp"
 #include "fase/broad/measure.hpp"
@@ -24,15 +24,10 @@ namespace {
 
 using broad::Move;
 using broad::Proxy;
-using MixClock = std::chrono::steady_clock;
 
 constexpr std::uint64_t max_run = 1000;  // queries of a kind that are run in a frame
 constexpr std::uint64_t max_finds = 1000, max_queries = 1'000'000;
 constexpr std::array all_states{MotionState::Static, MotionState::Asleep, MotionState::Awake};
-
-double mix_ms_since(MixClock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(MixClock::now() - begin).count();
-}
 
 Error bad_mix(const std::string& part) {
     return {Status::BadArgument, "--mix",
@@ -115,32 +110,32 @@ private:
 
     void find_pairs(const MixedSets& sets) {
         if (mix_.pairs == 0) return;
-        const auto begin = MixClock::now();
+        const auto begin = Clock::now();
         for (std::uint64_t i = 0; i < mix_.pairs; ++i) {
             pairs_.clear();
             sets.find_pairs(tasks_, pairs_);
         }
-        figures_.pairs_ms += mix_ms_since(begin);
+        figures_.pairs_ms += ms_since(begin);
         answers_.add(broad::fingerprint_of(pairs_).sum);
     }
     void cast_rays(const MixedSets& sets, std::span<const Ray> rays) {
         if (rays.empty()) return;
-        const auto begin = MixClock::now();
+        const auto begin = Clock::now();
         float sum = 0;
         for (const Ray& ray : rays) sum += sets.cast(ray);
-        figures_.rays_ms += extrapolated(mix_ms_since(begin), mix_.rays);
+        figures_.rays_ms += extrapolated(ms_since(begin), mix_.rays);
         answers_.add(sum);
     }
     void query_boxes(const MixedSets& sets, std::span<const Aabb> boxes) {
         if (boxes.empty()) return;
-        const auto begin = MixClock::now();
+        const auto begin = Clock::now();
         std::uint64_t found = 0;
         for (const Aabb& box : boxes) {
             proxies_.clear();
             sets.overlapping(box, proxies_);
             found += proxies_.size();
         }
-        figures_.boxes_ms += extrapolated(mix_ms_since(begin), mix_.boxes);
+        figures_.boxes_ms += extrapolated(ms_since(begin), mix_.boxes);
         answers_.add(found);
     }
     static double extrapolated(double ms, std::uint64_t count) {
@@ -194,23 +189,23 @@ Result<MixFigures> measure_mix(record::TraceReader& trace, const TraceSurvey& su
     std::vector<Aabb> boxes;
     trace.rewind();
     if (const Result<bool> read = trace.next(boxes); !read) return read.error();
-    const auto start = MixClock::now();
+    const auto start = Clock::now();
     MixedSets sets(choice.empty, boxes, bench::motion_states_of(trace));
-    figures.build_ms = mix_ms_since(start);
+    figures.build_ms = ms_since(start);
     MixFigures warm_up;
     MixRun(mix, tasks, warm_up).run(sets, boxes, 0);
     MixRun run(mix, tasks, figures);
     for (std::uint64_t frame = 0; frame < survey.frames; ++frame) {
         if (!report(frame, survey.frames, choice.chosen)) return figures;
-        if (mix_ms_since(start) > max_seconds * 1000) {
+        if (ms_since(start) > max_seconds * 1000) {
             figures.skipped = fmt::format("took more than {} s for {} frames of {}", max_seconds, frame, survey.frames);
             return figures;
         }
         if (frame > 0) {
             if (const Result<bool> read = trace.next(boxes); !read) return read.error();
-            const auto begin = MixClock::now();
+            const auto begin = Clock::now();
             sets.update(tasks, boxes);
-            figures.update_ms += mix_ms_since(begin);
+            figures.update_ms += ms_since(begin);
         }
         run.run(sets, boxes, frame);
     }

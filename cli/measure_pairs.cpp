@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
 #include "bench/pairs.hpp"
+#include "cli/common/clock.hpp"
 #include "fase/broad/brute_force.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/random.hpp"
@@ -19,15 +19,10 @@ namespace {
 using broad::Move;
 using broad::Pair;
 using broad::Proxy;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t max_pairs = std::uint64_t{1} << 28;  // 2 GiB
 constexpr std::size_t max_tested = 1000;                     // boxes up to which the reference tests all pairs
 constexpr std::uint64_t sampled_frames = 16;                 // frames whose pairs are estimated without a check
-
-double ms_since(Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 /// Estimates the number of pairs: tests a sample of the boxes against all.
 double estimated_pairs(std::span<const Aabb> boxes) {

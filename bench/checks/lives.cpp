@@ -195,8 +195,8 @@ std::vector<std::string> structure_names() {
 /// The worlds that must stay equal, and the last snapshot.
 struct Worlds {
     World one, other;
-    std::optional<World> anew;  ///< from the last snapshot; none before the first
-    std::string other_structure, anew_structure;
+    std::optional<World> restored_world;  ///< from the last snapshot; none before the first
+    std::string other_structure, restored_structure;
     std::vector<std::byte> saved{};
     std::uint64_t saved_hash = 0;
 
@@ -204,15 +204,16 @@ struct Worlds {
         saved = one.snapshot();
         saved_hash = one.hash();
         if (other.hash() != saved_hash) return "hashes differ with structure " + other_structure;
-        anew = *World::create({}, {.structure = anew_structure});
-        if (const auto restored = anew->restore(saved); !restored) return "refused: " + restored.error().text();
-        return anew->hash() == saved_hash ? "" : "the hash of a world restored from a snapshot differs";
+        restored_world = *World::create({}, {.structure = restored_structure});
+        if (const auto restored = restored_world->restore(saved); !restored)
+            return "refused: " + restored.error().text();
+        return restored_world->hash() == saved_hash ? "" : "the hash of a world restored from a snapshot differs";
     }
     std::string restore() {
         if (saved.empty()) return {};
-        for (World* world : {&one, &other, &*anew})
+        for (World* world : {&one, &other, &*restored_world})
             if (const auto restored = world->restore(saved); !restored) return "refused: " + restored.error().text();
-        for (World* world : {&one, &other, &*anew})
+        for (World* world : {&one, &other, &*restored_world})
             if (world->hash() != saved_hash) return "the hash after restore() is not that of the snapshot";
         return {};
     }
@@ -227,8 +228,8 @@ struct Worlds {
             return "a refused call changed the hash";
         if (play(other, call).status != first.status || other.hash() != after)
             return "the hash differs with 2 threads and structure " + other_structure;
-        if (anew && (play(*anew, call).status != first.status || anew->hash() != after))
-            return "the hash differs in a world restored from a snapshot, with structure " + anew_structure;
+        if (restored_world && (play(*restored_world, call).status != first.status || restored_world->hash() != after))
+            return "the hash differs in a world restored from a snapshot, with structure " + restored_structure;
         return {};
     }
 };
@@ -255,8 +256,8 @@ std::string difference_in(const Life& life, const Context& context) {
     // From the first call, so that shrinking keeps the structures as long as that call stays.
     Random random(life.empty() ? 0 : life.front().seed, 6);
     const std::string other = structures[random.below(structures.size())];
-    const std::string anew = structures[random.below(structures.size())];
-    Worlds worlds{make_world("auto", 1), make_world(other, 2), {}, other, anew};
+    const std::string restored_world = structures[random.below(structures.size())];
+    Worlds worlds{make_world("auto", 1), make_world(other, 2), {}, other, restored_world};
     for (std::size_t i = 0; i < life.size(); ++i) {
         if (!context.keep_going()) return {};
         const std::string difference = worlds.make(life[i]);

@@ -41,7 +41,7 @@ using Life = std::vector<Call>;
 /// Returns the life number `run`: about 80 calls, which begin with a ground and some bodies.
 [[nodiscard]] Life random_life(std::uint64_t seed, int run);
 
-/// Plays a life in three worlds: one thread, two threads with another structure, and a world that is made anew from
+/// Plays a life in three worlds: one thread, two threads with another structure, and a world that is restored from
 /// each snapshot. Returns what differs, or what a refused call changed; "" when nothing does.
 [[nodiscard]] std::string difference_in(const Life& life, const Context& context);
 

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cstdio>
 #include <new>
 #include <optional>
 
 #include "cli/common/arguments.hpp"
+#include "cli/common/clock.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/input.hpp"
 #include "cli/common/output.hpp"
@@ -139,9 +139,6 @@ struct MapJob {
 
 void compile(const LevelCommand& command, const ParsedOptions& options, const Wad& wad, TaskRunner& tasks,
              MapJob& job) {
-    const auto since = [](auto start) {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    };
     Result<Map> map = level::read_map(command.file, wad, wad.lumps[job.marker].name);
     if (!map) {
         job.error = map.error();
@@ -150,7 +147,7 @@ void compile(const LevelCommand& command, const ParsedOptions& options, const Wa
     job.map = std::move(*map);
     for (const std::string& what : job.map->left_out)
         print_line("warning", fmt::format("{}: {}: left out {}", command.file, job.map->name, what));
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     Result<LevelBsp> bsp = options.read ? level::read_bsp(command.file, wad, job.marker, *job.map, *options.read)
                                         : level::compile(*job.map, options.compile);
     if (!bsp) {
@@ -158,7 +155,7 @@ void compile(const LevelCommand& command, const ParsedOptions& options, const Wa
         if (!options.read) job.error->where = fmt::format("{}: {} {}", command.file, job.map->name, job.error->where);
         return;
     }
-    job.row.ms = since(start);
+    job.row.ms = ms_since(start);
     job.bsp = std::move(*bsp);
     job.row.map = job.map->name;
     job.row.stats = job.bsp->stats;
@@ -238,7 +235,7 @@ Result<int> compile_maps(const LevelCommand& command) {
     const Result<std::vector<std::size_t>> markers = markers_of(command, *wad);
     if (!markers) return markers.error();
 
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     std::vector<MapJob> jobs(markers->size());
     for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].marker = (*markers)[i];
     const auto tasks = make_thread_runner(command.threads);
@@ -246,7 +243,7 @@ Result<int> compile_maps(const LevelCommand& command) {
         const StandardFloats floats;
         compile(command, *options, *wad, *tasks, jobs[i]);
     });
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double ms = ms_since(start);
     std::vector<LevelRow> rows;
     for (MapJob& job : jobs) {
         if (job.error && !(command.all && job.error->status == Status::Unsupported)) return *job.error;

@@ -7,11 +7,11 @@
 #include <array>
 #include <atomic>
 #include <charconv>
-#include <chrono>
 #include <cstdio>
 #include <optional>
 #include <string_view>
 
+#include "cli/common/clock.hpp"
 #include "cli/common/output.hpp"
 #include "fase/core/random.hpp"
 #include "fase/level/polygon_bsp.hpp"
@@ -96,12 +96,12 @@ RayResults cast_rays(const level::PolygonBsp& tree, std::uint64_t count, TaskRun
         ray.direction = normalized(to_float(random_point() - ray.origin));
     }
     std::vector<std::optional<level::PolygonHit>> hits(count);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     parallel_ranges(tasks, count, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = tree.cast_ray(rays[i]);
     });
     RayResults result;
-    result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.ms = ms_since(start);
     result.cast = count;
     for (const auto& hit : hits) result.hits += hit ? 1 : 0;
     result.checked = std::min<std::uint64_t>(count, std::max<std::uint64_t>(1, max_tests / tree.stats().triangles));
@@ -131,9 +131,9 @@ Result<int> build_tree(const LevelMeshCommand& command) {
     Result<TriangleMesh> mesh = read_mesh(command);
     if (!mesh) return mesh.error();
     const auto tasks = make_thread_runner(command.threads);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const Result<level::PolygonBsp> tree = level::PolygonBsp::build(*std::move(mesh), {.tasks = tasks.get()});
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double ms = ms_since(start);
     if (!tree) {
         Error error = tree.error();
         error.where = command.file + ": " + error.where;

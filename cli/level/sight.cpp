@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
+#include "cli/common/clock.hpp"
 #include "fase/core/random.hpp"
 #include "fase/level/level_place.hpp"
 
@@ -69,11 +68,11 @@ Result<SightReport> look_around(const level::Map& map, const level::LevelBsp& bs
         report.from_point = level::seen_from(bsp, map, {*options.point, floor + eye_height}, options.heights);
     }
     if (!options.sets) return report;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const Result<level::VisibleResult> found =
         level::find_visible(bsp, map, {.heights = options.heights, .tasks = &tasks});
     if (!found) return found.error();
-    report.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    report.ms = ms_since(start);
     report.sets = found->stats;
     if (cell) found->sets.for_each_seen(*cell, [&](std::uint32_t s) { report.from_cell.push_back(s); });
     if (options.rays > 0) check_with_rays(map, bsp, found->sets, options, report, tasks);

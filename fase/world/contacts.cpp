@@ -55,16 +55,24 @@ EventCollider event_collider(const BodyTable& bodies, const ColliderTable& colli
     return event;
 }
 
+namespace {
+
+std::pair<std::uint32_t, std::uint32_t> index_and_generation(const EventCollider& collider) {
+    return {collider.index, collider.generation};
+}
+
+}  // namespace
+
+void sort_removed(ContactTable& contacts) { std::ranges::sort(contacts.removed, {}, index_and_generation); }
+
 std::array<EventCollider, 2> event_colliders(const BodyTable& bodies, const ColliderTable& colliders,
                                              const ContactTable& contacts, const Contact& contact) {
     const auto event = [&](const ContactSide& side) {
         if (is_current(colliders, side.collider, side.generation))
             return event_collider(bodies, colliders, side.collider);
-        const auto was = [&](const EventCollider& removed) {
-            return removed.index == side.collider && removed.generation == side.generation;
-        };
-        const auto removed = std::ranges::find_if(contacts.removed, was);
-        return removed != contacts.removed.end()
+        const std::pair<std::uint32_t, std::uint32_t> id{side.collider, side.generation};
+        const auto removed = std::ranges::lower_bound(contacts.removed, id, {}, index_and_generation);
+        return removed != contacts.removed.end() && index_and_generation(*removed) == id
                    ? *removed
                    : EventCollider{{side.collider, side.generation, colliders.ids.owner()}};
     };
@@ -97,7 +105,7 @@ void set_touching(BodyTable& bodies, const ColliderTable& colliders, const Conta
     // What is no longer held must not fall asleep on the rest it had. It wakes alone, without its island.
     for (const auto& [collider, generation, body] : sides_of(contact)) {
         if (!is_current(colliders, collider, generation) || bodies.traits[body].kind != BodyKind::Dynamic) continue;
-        bodies.motion[body].sleep_time = 0;
+        restart_rest(bodies, body);
         if (bodies.traits[body].motion_state == MotionState::Asleep) bodies.let_go.push_back(body);
     }
 }

@@ -71,9 +71,9 @@ void find_islands(const StepContext& context, const Constraints& constraints, Bo
         if (c.moves == Moves::Both) {
             lists.sets.unite(c.body_a, c.body_b);
         } else if (moving_kinematic(c.body_a)) {
-            bodies.motion[c.body_b].sleep_time = 0;
+            restart_rest(bodies, c.body_b);
         } else if (moving_kinematic(c.body_b)) {
-            bodies.motion[c.body_a].sleep_time = 0;
+            restart_rest(bodies, c.body_a);
         }
     }
     for (const std::uint32_t body : bodies.awake) {

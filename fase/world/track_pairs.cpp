@@ -180,6 +180,7 @@ void clear_changes(BroadPhase& broad_phase, const Moved& moved) {
 void track_pairs(const StepContext& context, const MotionStates& state, Moved& moved) {
     const ColliderTable& colliders = state.colliders;
     BroadPhase& broad_phase = state.broad_phase;
+    sort_removed(state.contacts);
     broad_phase.query_boxes.clear();
     for (const std::uint32_t c : moved.colliders) broad_phase.query_boxes.push_back({c, broad_phase.boxes[c]});
     broad_phase.sets.of(MotionState::Awake).move(context.tasks, broad_phase.query_boxes);

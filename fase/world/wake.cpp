@@ -8,16 +8,6 @@ namespace fase {
 using dynamics::BodyTraits;
 using dynamics::Contact;
 
-namespace {
-
-/// Begins the rest of a body anew; not sooner than it may begin after an edit.
-void restart_rest(BodyTable& bodies, std::uint32_t body) {
-    float& rest = bodies.motion[body].sleep_time;
-    rest = std::min(rest, 0.0f);
-}
-
-}  // namespace
-
 void request_wake(BodyTable& bodies, std::uint32_t body) {
     const BodyTraits& traits = bodies.traits[body];
     if (traits.motion_state != MotionState::Asleep || traits.quarantined) return;

@@ -19,6 +19,8 @@ bool is_installed(const std::string& program) {
     return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
 }
 
+constexpr const char* python_line = "python3 -B writer.py";
+
 class TraceWriters : public ::testing::Test {
 protected:
     /// Writes the program in `language` to a file, runs the shell line there, and returns the trace.
@@ -40,10 +42,15 @@ protected:
         EXPECT_EQ(number_at(rows[0], "pairs_first"), 0);
         EXPECT_EQ(number_at(rows[0], "pairs_last"), 20) << "all cubes touch the ground";
     }
+    void expect_same_as_python(const std::string& compiler, const std::string& language, const std::string& line) {
+        if (!is_installed(compiler) || !is_installed("python3"))
+            GTEST_SKIP() << "skipped: no " << compiler << " or python3";
+        const std::string trace = written_by(language, "writer." + language, line);
+        expect_good_trace();
+        EXPECT_EQ(written_by("python", "writer.py", python_line), trace);
+    }
     TemporaryFolder folder;
 };
-
-constexpr const char* python_line = "python3 -B writer.py";
 
 TEST_F(TraceWriters, ThePythonProgramWritesATrace) {
     if (!is_installed("python3")) GTEST_SKIP() << "skipped: no python3";
@@ -52,19 +59,11 @@ TEST_F(TraceWriters, ThePythonProgramWritesATrace) {
 }
 
 TEST_F(TraceWriters, TheCxxProgramWritesTheSameTrace) {
-    if (!is_installed("c++") || !is_installed("python3")) GTEST_SKIP() << "skipped: no c++ or python3";
-    const std::string trace =
-        written_by("cpp", "writer.cpp", "c++ -std=c++20 -Wall -Wextra -Werror writer.cpp -o writer && ./writer");
-    expect_good_trace();
-    EXPECT_EQ(written_by("python", "writer.py", python_line), trace);
+    expect_same_as_python("c++", "cpp", "c++ -std=c++20 -Wall -Wextra -Werror writer.cpp -o writer && ./writer");
 }
 
 TEST_F(TraceWriters, TheCProgramWritesTheSameTrace) {
-    if (!is_installed("cc") || !is_installed("python3")) GTEST_SKIP() << "skipped: no cc or python3";
-    const std::string trace =
-        written_by("c", "writer.c", "cc -std=c11 -Wall -Wextra -Werror writer.c -o writer && ./writer");
-    expect_good_trace();
-    EXPECT_EQ(written_by("python", "writer.py", python_line), trace);
+    expect_same_as_python("cc", "c", "cc -std=c11 -Wall -Wextra -Werror writer.c -o writer && ./writer");
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 """Checks that tools/check_layers.py reports each kind of violation in a small tree."""
-import subprocess
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-CHECK = Path(__file__).parents[2] / "tools" / "check_layers.py"
+from run_check import run_check
+
 GOOD = {
     "fase/core/ids.hpp": "#include <cstdint>\n",
     "fase/math/vec3.hpp": '#include "fase/core/ids.hpp"\n',
@@ -16,14 +13,7 @@ GOOD = {
 
 
 def check(files):
-    """Returns exit code and output of the check on a tree of these files."""
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in files.items():
-            path = Path(folder) / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text)
-        done = subprocess.run([sys.executable, CHECK, folder], capture_output=True, text=True)
-        return done.returncode, done.stdout
+    return run_check("check_layers.py", files)
 
 
 class CheckLayers(unittest.TestCase):

@@ -1,5 +1,6 @@
 #pragma once
 /// Pairs and their contacts, which begin, touch and end, and the list of constraints.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -55,12 +56,19 @@ void end_contact(BodyTable& bodies, const ColliderTable& colliders, ContactTable
 /// Returns what events tell of a collider that exists.
 [[nodiscard]] EventCollider event_collider(const BodyTable& bodies, const ColliderTable& colliders,
                                            std::uint32_t collider);
-/// Returns what events tell of the two colliders of a contact; either may have been removed since the last step.
+/// Returns what events tell of the two colliders of a contact; either may have been removed since the last step. Call
+/// sort_removed() before, when there are removed ones. O(log removed).
 [[nodiscard]] std::array<EventCollider, 2> event_colliders(const BodyTable& bodies, const ColliderTable& colliders,
                                                            const ContactTable& contacts,
                                                            const dynamics::Contact& contact);
-/// Sets whether two colliders touch, and reports the change. Bodies whose contact ends begin their rest
-/// anew.
+/// Sorts ContactTable::removed, which event_colliders() searches: at the beginning of track_pairs().
+void sort_removed(ContactTable& contacts);
+/// Restarts the time that a body has rested; a time that is still negative after an edit stays.
+inline void restart_rest(BodyTable& bodies, std::uint32_t body) {
+    float& rest = bodies.motion[body].sleep_time;
+    rest = std::min(rest, 0.0f);
+}
+/// Sets whether two colliders touch, and reports the change. Restarts the rest of bodies whose contact ends.
 void set_touching(BodyTable& bodies, const ColliderTable& colliders, const ContactTable& contacts, Events& events,
                   dynamics::Contact& contact, bool touching);
 void add_resting(ContactTable& contacts, std::uint32_t contact);

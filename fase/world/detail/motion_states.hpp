@@ -50,10 +50,12 @@ void mark_edited(BroadPhase& broad_phase, QueryTrees& query, std::uint32_t colli
 /// Requests that the next step wakes the body's island before it finds pairs. Does nothing for a body that is awake or
 /// quarantined. Edits call reserve_wakes() before.
 void request_wake(BodyTable& bodies, std::uint32_t body);
-/// Call when something may have changed what moves a body: its rest begins anew, and it wakes. Does nothing for static
+/// Call when something may have changed what moves a body: wakes it, and restarts its rest after
+/// Settings::time_to_sleep. Does nothing for static
 /// bodies, and for kinematic ones without velocity. Edits call reserve_wakes() before.
 void disturb(BodyTable& bodies, const Settings& settings, std::uint32_t body);
-/// Wakes the islands of all bodies in BodyTable::to_wake, and what they carry. Their rest begins anew.
+/// Wakes the islands of all bodies in BodyTable::to_wake, and what they carry. Restarts the rest of the requested
+/// bodies; the others stay awake for at least Settings::time_to_sleep.
 void wake_requested_islands(const MotionStates& state, const Settings& settings);
 /// Wakes the sleeping bodies behind one that is struck with `momentum` (kg m/s), as far as the blow may move them.
 void wake_struck(const MotionStates& state, const Settings& settings, std::uint32_t body, float momentum);

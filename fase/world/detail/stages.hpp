@@ -67,7 +67,7 @@ void finish(const StepContext& context, const dynamics::Solver& solver, const Co
 /// Collides sensors where the bodies are after they moved, so that events tell the end of the step.
 void collide_sensors(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders,
                      const Moved& moved, const Constraints& constraints, ContactTable& contacts);
-/// Reports contacts, sensors and hits. Bodies whose contact ended begin their rest anew.
+/// Reports contacts, sensors and hits. Restarts the rest of bodies whose contact ended.
 void publish_events(const Settings& settings, const ColliderTable& colliders, const Constraints& constraints,
                     BodyTable& bodies, ContactTable& contacts, Events& events);
 
