@@ -86,6 +86,7 @@ void fill_lane(const Lane& at, const Constraint& constraint, const ContactManifo
     block.friction_impulse[0][lane] = m.friction_impulse[0] * warm;
     block.friction_impulse[1][lane] = m.friction_impulse[1] * (warm * sign);
     block.twist_impulse[lane] = m.twist_impulse * warm;
+    for (auto& row : block.change) row[lane] = 0;
     block.friction[lane] = m.friction;
     block.restitution[lane] = m.restitution;
     block.impact[lane] = 0;
@@ -119,7 +120,8 @@ ContactResult store_lane(const Lane& at, const Constraint& constraint, ContactMa
         result.hit_offset_a = hit_offset(m, hardest, block.approach[hardest][lane], constraint, in) - read(row_a.moved);
     result.nearest = absent_separation;
     for (int i = 0; i < m.count; ++i) {
-        m.separation[i] = block.separation[i][lane];
+        m.separation[i] = block.separation[i][lane] + block.change[0][lane] + block.x[i][lane] * block.change[1][lane] +
+                          block.y[i][lane] * block.change[2][lane];
         result.nearest = std::min(result.nearest, m.separation[i]);
     }
     return result;

@@ -141,10 +141,11 @@ template <class V> FASE_INLINE Affine<V> normal_velocity(const Frame<V>& f, cons
     return {dot(f.n, relative), V::set(0.0f) - dot(f.t2, spin), dot(f.t1, spin)};
 }
 
-/// Returns the change of the separation since the beginning of the step, from the motion of the bodies. The tangent
-/// frame turns with the points of b, and at the same time with those of a.
+/// Computes the change of the separation since the beginning of the step from the motion of the bodies, and stores it
+/// for the passes until the bodies move again. The tangent frame turns with the points of b, and at the same time with
+/// those of a.
 template <class V>
-FASE_INLINE Affine<V> separation_change(const ContactBlock& k, int s, const Frame<V>& f, const SolverBody* bodies) {
+FASE_INLINE Affine<V> update_change(ContactBlock& k, int s, const Frame<V>& f, const SolverBody* bodies) {
     V a[8], b[8];
     const float* motions = reinterpret_cast<const float*>(bodies) + 8;
     V::gather8(motions, k.a + s, 16, a);
@@ -152,7 +153,14 @@ FASE_INLINE Affine<V> separation_change(const ContactBlock& k, int s, const Fram
     const Vec<V> moved = Vec<V>{b[0], b[1], b[2]} - Vec<V>{a[0], a[1], a[2]};
     const Vec<V> ea = inverse_rotation_delta(Vec<V>{a[4], a[5], a[6]}, V::load(k.turns_a + s), f.n);
     const Vec<V> eb = inverse_rotation_delta(Vec<V>{b[4], b[5], b[6]}, V::load(k.turns_b + s), f.n), e = eb - ea;
-    return {dot(f.n, moved) + dot(eb, f.cb) - dot(ea, f.ca), dot(e, f.t1), dot(e, f.t2)};
+    const Affine<V> change{dot(f.n, moved) + dot(eb, f.cb) - dot(ea, f.ca), dot(e, f.t1), dot(e, f.t2)};
+    change.centre.store(k.change[0] + s);
+    change.slope_x.store(k.change[1] + s);
+    change.slope_y.store(k.change[2] + s);
+    return change;
+}
+template <class V> FASE_INLINE Affine<V> load_change(const ContactBlock& k, int s) {
+    return {V::load(k.change[0] + s), V::load(k.change[1] + s), V::load(k.change[2] + s)};
 }
 
 /// The symmetric 3 x 3 matrix by which normal impulses change the normal velocity.
@@ -250,7 +258,7 @@ template <class V> void find_impact_lanes(ContactBlock& k, int s, const PassInpu
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
     const Frame<V> f = Frame<V>::load(k, s);
-    const Affine<V> velocity = normal_velocity(f, u), change = separation_change(k, s, f, in.bodies);
+    const Affine<V> velocity = normal_velocity(f, u), change = load_change<V>(k, s);
     const V slowest = V::set(in.impact_speed);
     V found = zero;
     for (int i = 0; i < 4; ++i) {
@@ -260,15 +268,6 @@ template <class V> void find_impact_lanes(ContactBlock& k, int s, const PassInpu
         found = max_of(found, select_greater(speed, slowest, hits, zero));
     }
     select_greater(V::load(k.restitution + s), zero, found, zero).store(k.impact + s);
-}
-
-/// Replaces the separations by those after the step.
-template <class V> void finish_lanes(ContactBlock& k, int s, const PassInput& in) {
-    const Affine<V> change = separation_change(k, s, Frame<V>::load(k, s), in.bodies);
-    for (int i = 0; i < 4; ++i) {
-        const V x = V::load(k.x[i] + s), y = V::load(k.y[i] + s);
-        change.add_to(V::load(k.separation[i] + s), x, y).store(k.separation[i] + s);
-    }
 }
 
 /// Applies the impulses of the last step.
@@ -451,7 +450,9 @@ void solve_lanes(ContactBlock& k, int s, const PassInput& in, HubVelocities& hub
 
     NormalSolver<V, biased> normal;
     normal.velocity = normal_velocity(f, u);
-    normal.points.template load<biased>(k, s, in, separation_change(k, s, f, in.bodies), normal.velocity);
+    // The bodies move between the biased and the relax pass only.
+    const Affine<V> change = biased ? load_change<V>(k, s) : update_change(k, s, f, in.bodies);
+    normal.points.template load<biased>(k, s, in, change, normal.velocity);
     normal.coupling = Coupling<V>::load(k, s);
     normal.solve();
     const NormalLoad<V> load = store_impulses<V, biased>(k, s, normal.points);
@@ -481,15 +482,28 @@ inline void merge_hub(const ContactBlock& k, const HubVelocities& hub, SolverBod
     }
 }
 
+/// Solves blocks i and i + 1 together where V has a type for it, and returns how many it solved.
+template <class V, Sides sides>
+FASE_INLINE std::size_t solve_pair(Pass pass, ContactBlock* blocks, std::size_t i, std::size_t count,
+                                   const PassInput& in, HubVelocities& hub) {
+    if constexpr (sides != Sides::Hub && !std::is_void_v<PairOf<V>>) {
+        if (i + 1 >= count) return 0;
+        if (pass == Pass::Biased) return solve_lanes<PairOf<V>, sides, true>(blocks[i], 0, in, hub), 2;
+        if (pass == Pass::Relax) return solve_lanes<PairOf<V>, sides, false>(blocks[i], 0, in, hub), 2;
+    }
+    return 0;
+}
+
 template <class V, Sides sides>
 void run_sides(Pass pass, ContactBlock* blocks, std::size_t count, const PassInput& in) {
     HubVelocities hub;
     for (std::size_t i = 0; i < count; ++i) {
+        while (const std::size_t solved = solve_pair<V, sides>(pass, blocks, i, count, in, hub)) i += solved;
+        if (i == count) break;
         ContactBlock& k = blocks[i];
         for (int s = 0; s < block_lanes; s += V::lanes) switch (pass) {
                 case Pass::Prepare: prepare_lanes<V, sides>(k, s, in); break;
                 case Pass::FindImpacts: find_impact_lanes<V>(k, s, in); break;
-                case Pass::Finish: finish_lanes<V>(k, s, in); break;
                 case Pass::WarmStart: warm_start_lanes<V, sides>(k, s, in, hub); break;
                 case Pass::Biased: solve_lanes<V, sides, true>(k, s, in, hub); break;
                 case Pass::Relax: solve_lanes<V, sides, false>(k, s, in, hub); break;

@@ -7,6 +7,8 @@
 //
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 #include "fase/dynamics/solver/contact_passes.hpp"
 #include "fase/math/detail/lane.hpp"
 #include "fase/math/detail/wide-inl.hpp"
@@ -14,6 +16,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fase::dynamics::HWY_NAMESPACE {
 using fase::HWY_NAMESPACE::Wide;
+#ifdef FASE_HAS_WIDE_PAIR
+/// The blocks of a colour are independent, so two of them can be solved together.
+template <class V> using PairOf = fase::HWY_NAMESPACE::WidePair<sizeof(ContactBlock) / sizeof(float)>;
+#else
+template <class V> using PairOf = void;
+#endif
 #include "fase/dynamics/solver/contact_passes-inl.hpp"
 
 void run_wide(Pass pass, ContactBlock* blocks, std::size_t count, Sides sides, const PassInput& input) {
@@ -25,6 +33,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fase::dynamics {
 namespace reference {
+template <class V> using PairOf = void;
 #include "fase/dynamics/solver/contact_passes-inl.hpp"
 }  // namespace reference
 

@@ -13,7 +13,6 @@ enum class Pass {
     WarmStart,    ///< applies the impulses of the last step
     Biased,       ///< soft contacts, with push-out of overlap and friction
     Relax,        ///< hard contacts without push-out, with friction
-    Finish,       ///< brings the separations to the end of the step
 };
 
 /// Runs a pass over `count` blocks of a colour in order. Lanes of a Sides::Hub block that share a body solve their

@@ -238,7 +238,6 @@ void Solver::run(const SolverSettings& settings, TaskRunner& tasks) {
         impacts_.correct_paths(rows_, motions_);
         run_passes(Pass::Relax, settings, tasks);
     }
-    run_passes(Pass::Finish, settings, tasks);
     for (const SolverMotion& motion : motions_) counts_.clamped += motion.clamped ? 1 : 0;
 }
 

@@ -40,6 +40,7 @@ struct alignas(64) ContactBlock {
     float offset_a[3][8], offset_b[3][8];
     float x[4][8], y[4][8];
     float separation[4][8];     ///< at the beginning of the step; huge for absent points
+    float change[3][8];         ///< of the separations since then: in the centre, and its slopes along x and y
     float impulse[4][8];        ///< of the sub-step
     float total[4][8];          ///< the impulses of all sub-steps and impacts
     float known_load[8];        ///< N s per point and sub-step: the weight that the contact is known to bear
@@ -52,12 +53,13 @@ struct alignas(64) ContactBlock {
     float twist_impulse[8];
     float lever[4][8];  ///< distance of the points from the centre
     float friction[8];
-    float restitution[8];  ///< 0: skipped by the impacts
+    float restitution[8];          ///< 0: skipped by the impacts
+    float turns_a[8], turns_b[8];  ///< 1: the points turn with the body; 0: they stay below it when it rolls
+    // Below: not read by the passes of a contact that neither bounces nor belongs to a hub.
+    float split[8];        ///< Sides::Hub: lanes of the block that share body a
     float approach[4][8];  ///< m/s at the beginning of the step or before the last impact, positive when closing
     float closing[8];      ///< m/s of closing velocity that gravity and forces add per sub-step
     float impact[8];       ///< 1: a point hits with restitution in this sub-step; set by Pass::FindImpacts
-    float turns_a[8], turns_b[8];  ///< 1: the points turn with the body; 0: they stay below it when it rolls
-    float split[8];                ///< Sides::Hub: lanes of the block that share body a
 };
 
 /// Coefficients of a soft constraint. Source: Catto 2011, Soft constraints.
