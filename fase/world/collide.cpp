@@ -65,7 +65,7 @@ WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& p
     return world;
 }
 
-/// What update_contact() reads; it writes the contact and its manifolds.
+/// What compute_manifolds() reads; it writes the contact and its manifolds.
 struct CollideTables {
     const Settings& settings;
     const BodyTable& bodies;
@@ -74,15 +74,28 @@ struct CollideTables {
     ContactTable& contacts;
 };
 
-/// Updates one contact. Returns true when its manifolds were reused.
-bool update_contact(const CollideTables& tables, Contact& c) {
+/// Loads what update_active() will read of the active contacts after number i.
+void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
+    constexpr std::size_t near = 4, far = 8;
+    if (i + far < end) detail::prefetch(contacts[contacts.active.values[i + far]]);
+    if (i + near >= end) return;
+    const Contact& next = contacts[contacts.active.values[i + near]];
+    detail::prefetch(contacts.manifolds[next.first_manifold]);
+    detail::prefetch(bodies.motion[next.body_a]);
+    detail::prefetch(bodies.motion[next.body_b]);
+}
+
+ReuseInput reuse_input(const CollideTables& tables, Contact& c) {
+    return {&c, &tables.contacts.manifolds[c.first_manifold], &tables.bodies.motion[c.body_a],
+            &tables.bodies.motion[c.body_b], std::min(tables.settings.contact_reuse_distance, c.reuse_distance)};
+}
+
+/// Computes the manifolds of a contact from its shapes.
+void compute_manifolds(const CollideTables& tables, Contact& c) {
     const auto& [settings, bodies, colliders, sweep, contacts] = tables;
     const BodyMotion& a = bodies.motion[c.body_a];
     const BodyMotion& b = bodies.motion[c.body_b];
-    const PairMotion motion = c.manifolds > 0 ? PairMotion(c, a, b) : PairMotion();
-    if (c.reusable && reuse_manifolds(c, contacts.manifolds.of(c), motion,
-                                      std::min(settings.contact_reuse_distance, c.reuse_distance)))
-        return true;
+    const PairMotion motion = c.manifolds > 0 ? pair_motion(c, a, b) : PairMotion();
     const Collider& ca = colliders[c.collider_a];
     const Collider& cb = colliders[c.collider_b];
     const SharedShape& shape_a = colliders.shapes[ca.shape];
@@ -104,18 +117,41 @@ bool update_contact(const CollideTables& tables, Contact& c) {
     c.reusable = manifold.count >= 3 && !c.sensor;  // sensors report in the step in which shapes part
     m.a_rolls = is_curved(shape_a.shape);
     m.b_rolls = is_curved(shape_b.shape);
+}
+
+/// Reuses or computes the manifolds of a contact. Returns true when it reused them.
+bool update_contact(const CollideTables& tables, Contact& c) {
+    if (c.reusable && reuse_manifolds(reuse_input(tables, c))) return true;
+    compute_manifolds(tables, c);
     return false;
 }
 
-/// Loads what update_contact() will read of the active contacts after number i.
-void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
-    constexpr std::size_t near = 4, far = 8;
-    if (i + far < end) detail::prefetch(contacts[contacts.active.values[i + far]]);
-    if (i + near >= end) return;
-    const Contact& next = contacts[contacts.active.values[i + near]];
-    detail::prefetch(contacts.manifolds[next.first_manifold]);
-    detail::prefetch(bodies.motion[next.body_a]);
-    detail::prefetch(bodies.motion[next.body_b]);
+/// Updates the active contacts [begin, end), a few dozen, and sets reused[i] for each: first those that may be reused,
+/// four at a time.
+void update_active(const CollideTables& tables, std::size_t begin, std::size_t end, std::span<std::uint8_t> reused) {
+    ContactTable& contacts = tables.contacts;
+    const auto contact = [&](std::size_t i) -> Contact& { return contacts[contacts.active.values[i]]; };
+    ReuseInput inputs[reused_together];
+    std::size_t at[reused_together], count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        prefetch_contact(tables.bodies, contacts, i, end);
+        Contact& c = contact(i);
+        reused[i] = 0;
+        if (!c.reusable || c.sensor) continue;
+        if (c.manifolds != 1) {
+            reused[i] = reuse_manifolds(reuse_input(tables, c)) ? 1 : 0;
+            continue;
+        }
+        at[count] = i;
+        inputs[count++] = reuse_input(tables, c);
+        if (count < reused_together) continue;
+        const unsigned bits = reuse_four(inputs);
+        for (std::size_t k = 0; k < reused_together; ++k) reused[at[k]] = bits >> k & 1;
+        count = 0;
+    }
+    for (std::size_t k = 0; k < count; ++k) reused[at[k]] = reuse_manifolds(inputs[k]) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i)
+        if (Contact& c = contact(i); reused[i] == 0 && !c.sensor) compute_manifolds(tables, c);
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
@@ -138,11 +174,9 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
     check_resting(tables, constraints.checked, context.tasks);
     constraints.reused.assign(contacts.active.size(), 0);
     parallel_ranges(context.tasks, contacts.active.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            prefetch_contact(bodies, contacts, i, end);
-            Contact& c = contacts[contacts.active.values[i]];
-            if (!c.sensor) constraints.reused[i] = update_contact(tables, c) ? 1 : 0;
-        }
+        constexpr std::size_t group = 32;
+        for (std::size_t i = begin; i < end; i += group)
+            update_active(tables, i, std::min(i + group, end), constraints.reused);
     });
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
     StepReport& report = context.report;

@@ -2,8 +2,11 @@
 #include "fase/world/detail/manifolds.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "fase/geometry/aabb.hpp"
+#include "fase/math/detail/float4.hpp"
 
 namespace fase {
 
@@ -11,48 +14,65 @@ using dynamics::BodyMotion;
 using dynamics::Contact;
 using dynamics::ContactManifold;
 
-RotationSince::RotationSince(Quat now, Quat then) : rotation(now * conjugate(then)) {
-    const auto [x, y, z, w] = rotation;
-    const float xx = x * x, yy = y * y, zz = z * z;
-    change = {Vec3{-yy - zz, x * y + w * z, x * z - w * y} * 2.0f, Vec3{x * y - w * z, -xx - zz, y * z + w * x} * 2.0f,
-              Vec3{x * z + w * y, y * z - w * x, -xx - yy} * 2.0f};
-}
+using detail::Float4;
 
-PairMotion::PairMotion(const Contact& contact, const BodyMotion& motion_a, const BodyMotion& motion_b)
-    : a(motion_a.rotation, contact.rotation_a),
-      b(motion_b.rotation, contact.rotation_b),
-      moved(to_float((motion_b.position - motion_a.position) - contact.b_from_a)) {}
+PairMotion pair_motion(const Contact& contact, const BodyMotion& a, const BodyMotion& b) {
+    return {{a.rotation, contact.rotation_a},
+            {b.rotation, contact.rotation_b},
+            to_float((b.position - a.position) - contact.b_from_a)};
+}
 
 namespace {
 
-/// Moves a manifold with its bodies. It turns about the normal with a, but does not tilt: the levers of a leaning tower
-/// stay those of the upright one. With soft contacts, true levers make tall towers buckle
-/// (docs/decisions/0014-contacts-move-with-their-bodies.md). Returns false when a point moved by `distance` or more
-/// between the bodies; the manifold is then partly moved.
-bool move_manifold(ContactManifold& m, const PairMotion& motion, float distance) {
-    const RotationSince &a = motion.a, &b = motion.b;
-    // The relative displacement is affine in the tangent coordinates of the points.
-    const Vec3 n = m.normal, second = cross(n, m.first_tangent);
-    const Vec3 centre = motion.moved + b.change * m.first_offset_b - a.change * m.first_offset_a;
-    const Mat3 change = b.change - a.change;
-    const Vec3 slope_x = change * m.first_tangent, slope_y = change * second;
-    const float centre_n = dot(centre, n), slope_x_n = dot(slope_x, n), slope_y_n = dot(slope_y, n);
-    bool near = true;
-    for (int i = 0; i < 4; ++i) {  // absent points lie in the centre
-        near &= length_squared(centre + slope_x * m.x[i] + slope_y * m.y[i]) < distance * distance;
-        m.separation[i] = m.first_separation[i] + centre_n + slope_x_n * m.x[i] + slope_y_n * m.y[i];
+constexpr float max_tilt = 3e-4f;
+
+/// A manifold when it was computed.
+template <class T> struct FirstFrame { Vec3Of<T> normal, tangent, offset_a, offset_b; };
+
+/// The displacement of the points between the bodies, which is affine in the tangent coordinates.
+template <class T> struct Displacement {
+    Vec3Of<T> centre, slope_x, slope_y;
+    T centre_n, slope_x_n, slope_y_n;  // along the normal
+
+    Displacement(const FirstFrame<T>& first, const PairMotionOf<T>& motion) {
+        const Vec3Of<T> n = first.normal, second = cross(n, first.tangent);
+        centre = motion.moved + motion.b.change * first.offset_b - motion.a.change * first.offset_a;
+        const Mat3Of<T> change = motion.b.change - motion.a.change;
+        slope_x = change * first.tangent;
+        slope_y = change * second;
+        centre_n = dot(centre, n);
+        slope_x_n = dot(slope_x, n);
+        slope_y_n = dot(slope_y, n);
     }
-    if (!near) return false;
+    [[nodiscard]] T squared_length(T x, T y) const { return length_squared(centre + slope_x * x + slope_y * y); }
+    [[nodiscard]] T separation(T first, T x, T y) const { return first + centre_n + slope_x_n * x + slope_y_n * y; }
+};
+
+/// Turns a manifold about its normal with body a; it does not tilt: the levers of a leaning tower stay those of the
+/// upright one. With soft contacts, true levers make tall towers buckle
+/// (docs/decisions/0014-contacts-move-with-their-bodies.md).
+void turn_frame(ContactManifold& m, Quat rotation_a) {
     m.tangent = m.first_tangent;
     m.offset_a = m.first_offset_a;
     m.offset_b = m.first_offset_b;
-    if (const float turn = dot(n, a.rotation.vector()); turn * turn > 1e-9f) {
-        const Quat twist = a.twist(n);
-        m.tangent = rotate(twist, m.tangent);
-        m.offset_a = rotate(twist, m.offset_a);
-        m.offset_b = rotate(twist, m.offset_b);
+    const float turn = dot(m.normal, rotation_a.vector());
+    if (!(turn * turn > 1e-9f)) return;
+    const Vec3 v = m.normal * turn;
+    const Quat twist = normalized(Quat{v.x, v.y, v.z, rotation_a.w});
+    m.tangent = rotate(twist, m.tangent);
+    m.offset_a = rotate(twist, m.offset_a);
+    m.offset_b = rotate(twist, m.offset_b);
+}
+
+bool move_manifold(ContactManifold& m, const PairMotion& motion, float distance) {
+    const Displacement<float> by({m.normal, m.first_tangent, m.first_offset_a, m.first_offset_b}, motion);
+    bool near = true;
+    for (int i = 0; i < 4; ++i) {  // absent points lie in the centre
+        near &= by.squared_length(m.x[i], m.y[i]) < distance * distance;
+        m.separation[i] = by.separation(m.first_separation[i], m.x[i], m.y[i]);
     }
-    return true;
+    if (near) turn_frame(m, motion.a.rotation);
+    return near;
 }
 
 float nearest_of(std::span<const ContactManifold> manifolds) {
@@ -60,6 +80,18 @@ float nearest_of(std::span<const ContactManifold> manifolds) {
     for (const ContactManifold& m : manifolds)
         for (int i = 0; i < m.count; ++i) nearest = std::min(nearest, m.separation[i]);
     return nearest;
+}
+
+/// Loads the same four floats of four objects: get(k) returns where those of object k are. Component i of the result
+/// holds float i of every object.
+template <class F> std::array<Float4, 4> load_four(const F& get) {
+    Float4 rows[4] = {Float4::load(get(0)), Float4::load(get(1)), Float4::load(get(2)), Float4::load(get(3))};
+    transpose(rows);
+    return {rows[0], rows[1], rows[2], rows[3]};
+}
+template <class F> QuatOf<Float4> load_quats(const F& get) {
+    const auto [x, y, z, w] = load_four([&](int k) { return &get(k).x; });
+    return {x, y, z, w};
 }
 
 /// The points of a manifold, from the centres of mass of both bodies.
@@ -132,14 +164,69 @@ void set_points(ContactManifold& m, const WorldManifold& world, Quat rotation_a)
 
 }  // namespace
 
-bool reuse_manifolds(Contact& contact, std::span<ContactManifold> manifolds, const PairMotion& motion, float distance) {
-    constexpr float max_tilt = 3e-4f;
+bool reuse_manifolds(const ReuseInput& input) {
+    const PairMotion motion = pair_motion(*input.contact, *input.a, *input.b);
+    const std::span<ContactManifold> manifolds(input.manifold, input.contact->manifolds);
     for (ContactManifold& m : manifolds)
         if (!(motion.a.tilt(m.normal) < max_tilt && motion.b.tilt(m.normal) < max_tilt) ||
-            !move_manifold(m, motion, distance))
+            !move_manifold(m, motion, input.distance))
             return false;
-    contact.nearest = nearest_of(manifolds);
+    input.contact->nearest = nearest_of(manifolds);
     return true;
+}
+
+unsigned reuse_four(const ReuseInput (&inputs)[reused_together]) {
+    PairMotionOf<Float4> motion;
+    motion.a = {load_quats([&](int k) -> const Quat& { return inputs[k].a->rotation; }),
+                load_quats([&](int k) -> const Quat& { return inputs[k].contact->rotation_a; })};
+    motion.b = {load_quats([&](int k) -> const Quat& { return inputs[k].b->rotation; }),
+                load_quats([&](int k) -> const Quat& { return inputs[k].contact->rotation_b; })};
+    float moved[3][4], distance[4];
+    for (int k = 0; k < 4; ++k) {
+        const ReuseInput& in = inputs[k];
+        const Vec3 by = to_float((in.b->position - in.a->position) - in.contact->b_from_a);
+        moved[0][k] = by.x;
+        moved[1][k] = by.y;
+        moved[2][k] = by.z;
+        distance[k] = in.distance * in.distance;
+    }
+    motion.moved = {Float4::load(moved[0]), Float4::load(moved[1]), Float4::load(moved[2])};
+    // The normal, the first tangent and both offsets follow each other.
+    const auto first = [&](int part) {
+        return load_four([&](int k) { return &inputs[k].manifold->normal.x + 4 * part; });
+    };
+    const auto [nx, ny, nz, tx] = first(0);
+    const auto [ty, tz, ax, ay] = first(1);
+    const auto [az, bx, by, bz] = first(2);
+    const FirstFrame<Float4> frame{{nx, ny, nz}, {tx, ty, tz}, {ax, ay, az}, {bx, by, bz}};
+    const Float4::Mask upright =
+        (motion.a.tilt(frame.normal) < Float4(max_tilt)) & (motion.b.tilt(frame.normal) < Float4(max_tilt));
+    const Displacement<Float4> by_points(frame, motion);
+    const auto xs = load_four([&](int k) { return inputs[k].manifold->x; });
+    const auto ys = load_four([&](int k) { return inputs[k].manifold->y; });
+    const auto first_separation = load_four([&](int k) { return inputs[k].manifold->first_separation; });
+    Float4 separation[4];
+    Float4::Mask reused = upright;
+    for (std::size_t i = 0; i < 4; ++i) {
+        reused &= by_points.squared_length(xs[i], ys[i]) < Float4::load(distance);
+        separation[i] = by_points.separation(first_separation[i], xs[i], ys[i]);
+    }
+    transpose(separation);
+    float rotation_a[4][4];
+    unsigned bits = 0;
+    const QuatOf<Float4>& q = motion.a.rotation;
+    Float4 rotation[4] = {q.x, q.y, q.z, q.w};
+    transpose(rotation);
+    for (int k = 0; k < 4; ++k) {
+        ContactManifold& m = *inputs[k].manifold;
+        if (upright[k] != 0) separation[k].store(m.separation);
+        if (reused[k] == 0) continue;
+        bits |= 1u << k;
+        rotation[k].store(rotation_a[k]);
+        turn_frame(m, {rotation_a[k][0], rotation_a[k][1], rotation_a[k][2], rotation_a[k][3]});
+        inputs[k].contact->nearest = nearest_of({&m, 1});
+    }
+    return bits;
 }
 
 void store_manifold(Contact& c, ContactManifold& m, const WorldManifold& world, const BodyMotion& a,

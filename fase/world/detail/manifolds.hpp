@@ -9,41 +9,56 @@
 
 namespace fase {
 
-/// How a body rotated since the manifolds of a contact were computed.
-struct RotationSince {
-    Quat rotation;
-    Mat3 change;  ///< R - 1 for the rotation R
+/// How a body rotated since the manifolds of a contact were computed. T: float, or a vector of floats for as many
+/// bodies.
+template <class T> struct RotationSinceOf {
+    QuatOf<T> rotation;
+    Mat3Of<T> change;  ///< R - 1 for the rotation R
 
-    RotationSince() = default;
-    RotationSince(Quat now, Quat then);
+    RotationSinceOf() = default;
+    RotationSinceOf(QuatOf<T> now, QuatOf<T> then) : rotation(now * conjugate(then)) {
+        const auto [x, y, z, w] = rotation;
+        const T xx = x * x, yy = y * y, zz = z * z;
+        change = {Vec3Of<T>{-yy - zz, x * y + w * z, x * z - w * y} * T(2),
+                  Vec3Of<T>{x * y - w * z, -xx - zz, y * z + w * x} * T(2),
+                  Vec3Of<T>{x * z + w * y, y * z - w * x, -xx - yy} * T(2)};
+    }
     /// Returns the square of the sine of half the angle by which the axis tilted.
-    [[nodiscard]] float tilt(Vec3 axis) const {
-        const Vec3 v = rotation.vector();
+    [[nodiscard]] T tilt(Vec3Of<T> axis) const {
+        const Vec3Of<T> v = rotation.vector();
         return length_squared(v - axis * dot(axis, v));
     }
-    /// Returns the part of the rotation that is about the axis.
-    [[nodiscard]] Quat twist(Vec3 axis) const {
-        const Vec3 v = axis * dot(axis, rotation.vector());
-        return normalized(Quat{v.x, v.y, v.z, rotation.w});
-    }
     /// Returns where a point of the body is now, from its place then.
-    [[nodiscard]] Vec3 turned(Vec3 then) const { return then + change * then; }
+    [[nodiscard]] Vec3Of<T> turned(Vec3Of<T> then) const { return then + change * then; }
 };
 
 /// How both bodies of a contact moved since its manifolds were computed.
-struct PairMotion {
-    RotationSince a, b;
-    Vec3 moved;  ///< of b from a, metres
+template <class T> struct PairMotionOf {
+    RotationSinceOf<T> a, b;
+    Vec3Of<T> moved;  ///< of b from a, metres
+};
+using PairMotion = PairMotionOf<float>;
 
-    PairMotion() = default;
-    PairMotion(const dynamics::Contact& contact, const dynamics::BodyMotion& a, const dynamics::BodyMotion& b);
+[[nodiscard]] PairMotion pair_motion(const dynamics::Contact& contact, const dynamics::BodyMotion& a,
+                                     const dynamics::BodyMotion& b);
+
+/// The number of contacts that reuse_four() takes.
+inline constexpr int reused_together = 4;
+
+/// A contact to reuse, and what moves it.
+struct ReuseInput {
+    dynamics::Contact* contact = nullptr;
+    dynamics::ContactManifold* manifold = nullptr;  ///< the first
+    const dynamics::BodyMotion *a = nullptr, *b = nullptr;
+    float distance = 0;  ///< metres that a point may move between the bodies
 };
 
 /// Moves the manifolds of a contact with its bodies. Returns false when they must be computed again: a point moved by
-/// `distance` or more between the bodies, or a body tilted by more than about two degrees. The manifolds are then
-/// partly moved.
-[[nodiscard]] bool reuse_manifolds(dynamics::Contact& contact, std::span<dynamics::ContactManifold> manifolds,
-                                   const PairMotion& motion, float distance);
+/// ReuseInput::distance or more between the bodies, or a body tilted by more than about two degrees. The manifolds are
+/// then partly moved.
+[[nodiscard]] bool reuse_manifolds(const ReuseInput& input);
+/// The same for four contacts of one manifold each, with the same bits. Returns a bit for each that is reused.
+[[nodiscard]] unsigned reuse_four(const ReuseInput (&inputs)[reused_together]);
 
 /// A manifold in world axes: offsets of its centre from the two centres of mass, and the points relative to the centre.
 struct WorldManifold {

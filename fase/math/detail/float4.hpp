@@ -1,0 +1,48 @@
+#pragma once
+/// Four floats in one vector, with the vector types of GCC and Clang: they need no instruction set beyond the one that
+/// all processors of the target have. Vectors, quaternions and matrices of Float4 do the same for four objects.
+#include <cmath>
+
+namespace fase::detail {
+
+/// Four lanes; each operation gives the bits of the same operation on floats.
+struct Float4 {
+    using Lanes = float __attribute__((vector_size(16)));
+    using Mask = int __attribute__((vector_size(16)));  ///< -1 where true, else 0
+    Lanes v;
+
+    Float4() : Float4(0.0f) {}
+    Float4(float value) : v{value, value, value, value} {}
+    Float4(Lanes value) : v(value) {}
+    static Float4 load(const float* p) {
+        Float4 loaded;
+        __builtin_memcpy(&loaded.v, p, sizeof loaded.v);
+        return loaded;
+    }
+    void store(float* p) const { __builtin_memcpy(p, &v, sizeof v); }
+
+    friend Float4 operator+(Float4 a, Float4 b) { return a.v + b.v; }
+    friend Float4 operator-(Float4 a, Float4 b) { return a.v - b.v; }
+    friend Float4 operator*(Float4 a, Float4 b) { return a.v * b.v; }
+    friend Float4 operator/(Float4 a, Float4 b) { return a.v / b.v; }
+    friend Float4 operator-(Float4 a) { return -a.v; }
+    friend Mask operator<(Float4 a, Float4 b) { return a.v < b.v; }
+    friend Float4 select(Mask mask, Float4 yes, Float4 no) { return mask ? yes.v : no.v; }
+    friend Float4 sqrt(Float4 a) {
+        return Lanes{std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])};
+    }
+};
+
+/// Transposes four rows of four lanes.
+inline void transpose(Float4 (&rows)[4]) {
+    const Float4::Lanes a = __builtin_shufflevector(rows[0].v, rows[1].v, 0, 4, 1, 5);
+    const Float4::Lanes b = __builtin_shufflevector(rows[0].v, rows[1].v, 2, 6, 3, 7);
+    const Float4::Lanes c = __builtin_shufflevector(rows[2].v, rows[3].v, 0, 4, 1, 5);
+    const Float4::Lanes d = __builtin_shufflevector(rows[2].v, rows[3].v, 2, 6, 3, 7);
+    rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+}  // namespace fase::detail
