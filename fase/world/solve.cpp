@@ -63,20 +63,15 @@ void quarantine_invalid_forces(const StepContext& context, const MotionStates& s
 }
 
 void solve(const StepContext& context, const BodyTable& bodies, const Moved& moved, ContactTable& contacts,
-           Constraints& constraints, dynamics::Solver& solver) {
-    const dynamics::SolverSettings settings = solver_settings(context);
-    solver.load_bodies(bodies, bodies.awake, settings, context.tasks);
-    solver.load_constraints({constraints.all, constraints.results}, contacts.colours, contacts.manifolds, bodies,
-                            settings, context.tasks);
-    solver.run(settings, context.tasks);
-    solver.store_constraints(constraints.all, contacts.manifolds, constraints.results, bodies, settings, context.tasks);
+           Constraints& constraints, IslandLists& islands, dynamics::Solver& solver) {
+    solver.solve({bodies, bodies.awake, constraints.all, constraints.results, islands.sets, contacts.colours,
+                  contacts.manifolds, solver_settings(context), context.tasks});
     const dynamics::SolverCounts counts = solver.counts();
     context.report.colours = counts.colours;
     context.report.overflow = counts.overflow;
     context.report.speed_clamped = counts.clamped;
-    for (std::size_t i = 0; !moved.clamped.empty() && i < bodies.awake.size(); ++i)
-        if (!solver.motion(i).clamped &&
-            std::binary_search(moved.clamped.begin(), moved.clamped.end(), bodies.awake[i]))
+    for (const std::uint32_t body : moved.clamped)
+        if (std::binary_search(bodies.awake.begin(), bodies.awake.end(), body) && !solver.motion(body).clamped)
             ++context.report.speed_clamped;
 }
 
@@ -115,10 +110,10 @@ void finish(const StepContext& context, const dynamics::Solver& solver, const Co
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = bodies.awake[i];
             const BodyTraits& traits = bodies.traits[body];
-            const dynamics::SolverBody& row = solver.body(i);
+            const dynamics::SolverBody& row = solver.row(body);
             BodyMotion next = bodies.motion[body];
             next.position += Vec3d{row.moved[0], row.moved[1], row.moved[2]};
-            const Quat turned = solver.motion(i).turned;
+            const Quat turned = solver.motion(body).turned;
             if (!(turned == Quat{})) next.rotation = normalized(turned * next.rotation);
             next.linear_velocity = {row.velocity[0], row.velocity[1], row.velocity[2]};
             next.angular_velocity = {row.spin[0], row.spin[1], row.spin[2]};

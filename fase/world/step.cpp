@@ -87,7 +87,7 @@ void step(WorldState& state, float seconds) {
     if (seconds > 0) {
         timed(report, Stage::Solve, [&] {
             quarantine_invalid_forces(context, motion_states, constraints);
-            solve(context, bodies, moved, contacts, constraints, state.solver);
+            solve(context, bodies, moved, contacts, constraints, state.islands, state.solver);
         });
         timed(report, Stage::Finish, [&] { finish(context, state.solver, constraints, motion_states); });
         list_moved(bodies, state.moved_bodies);

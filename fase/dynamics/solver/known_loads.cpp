@@ -43,11 +43,12 @@ void KnownLoads::sort_top_down(bool any_stack) {
 void KnownLoads::weigh_bodies(const Input& in, Vec3 up) {
     const Vec3d up_exact = to_double(up);
     carriers_.assign(in.motions.size(), {});
-    for (std::size_t i = 0; i < in.awake.size(); ++i) {
-        Carrier& carrier = carriers_[i + 1];
-        carrier.height = dot(in.bodies.motion[in.awake[i]].position, up_exact);
-        const float inverse_mass = in.bodies.traits[in.awake[i]].inverse_mass;
-        if (inverse_mass > 0) carrier.load = std::max(-dot(in.motions[i + 1].velocity_step, up) / inverse_mass, 0.0f);
+    for (const std::uint32_t body : in.awake) {
+        const std::uint32_t row = in.row_of_body[body];
+        carriers_[row].height = dot(in.bodies.motion[body].position, up_exact);
+        const float inverse_mass = in.bodies.traits[body].inverse_mass;
+        if (inverse_mass > 0)
+            carriers_[row].load = std::max(-dot(in.motions[row].velocity_step, up) / inverse_mass, 0.0f);
     }
 }
 

@@ -22,7 +22,7 @@ public:
         const ConstraintInput& list;
         const ManifoldPool& manifolds;
         const Bodies& bodies;
-        std::span<const std::uint32_t> awake;        ///< bodies; number i has row i + 1
+        std::span<const std::uint32_t> awake;        ///< bodies
         std::span<const std::uint32_t> row_of_body;  ///< 0: static or asleep
         std::span<const SolverMotion> motions;       ///< by row
         Vec3 gravity;                                ///< m/s²

@@ -58,7 +58,7 @@ void find_islands(const StepContext& context, const Constraints& constraints, Bo
 void quarantine_invalid_forces(const StepContext& context, const MotionStates& state, Constraints& constraints);
 /// Runs the solver: manifolds and results get their impulses; the bodies do not move yet.
 void solve(const StepContext& context, const BodyTable& bodies, const Moved& moved, ContactTable& contacts,
-           Constraints& constraints, dynamics::Solver& solver);
+           Constraints& constraints, IslandLists& islands, dynamics::Solver& solver);
 /// Gives the awake bodies the motion that the solver computed. Quarantines those for which it is invalid.
 void finish(const StepContext& context, const dynamics::Solver& solver, const Constraints& constraints,
             const MotionStates& state);

@@ -1,0 +1,188 @@
+/// The soft step over graph colours.
+#include "fase/dynamics/solver/batch_solver.hpp"
+
+#include <algorithm>
+
+#include "fase/core/detail/prefetch.hpp"
+#include "fase/dynamics/solver/rows.hpp"
+
+namespace fase::dynamics {
+namespace {
+
+constexpr std::size_t body_grain = 256;
+constexpr std::size_t contact_grain = 128;
+constexpr std::size_t block_grain = 24;
+constexpr std::size_t prefetch_ahead = 6;  // manifolds
+constexpr int overflow_two_sided = ConstraintColours::count, overflow_one_sided = ConstraintColours::count + 1;
+// The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
+// at an eighth, pyramids vibrate.
+constexpr float max_frequency_share = 0.1f;
+// A sleeper is held, so the effective mass of its contact with an equal body is twice that of two awake ones. This
+// share of frequency and damping ratio, the root of 1/2, keeps stiffness and damping of the contact as they were: what
+// lies beside a body that falls asleep or wakes does not jump.
+constexpr float sleeper_share = 0.70710678f;
+
+}  // namespace
+
+Softness make_softness(float frequency, float damping_ratio, float sub_step) {
+    if (frequency <= 0) return {0, 1, 0};
+    const float omega = 2 * 3.14159265358979f * frequency;
+    const float a1 = 2 * damping_ratio + sub_step * omega;
+    const float a2 = sub_step * omega * a1;
+    const float a3 = 1 / (1 + a2);
+    return {omega / a1, a2 * a3, a3};
+}
+
+void BatchSolver::solve(const BatchInput& in, TaskRunner& tasks) {
+    load(in, tasks);
+    run(in, tasks);
+    store(in, tasks);
+}
+
+BatchSolver::Slot BatchSolver::place(const BatchInput& in, const Constraint& constraint, ConstraintColour colour) {
+    const bool both = constraint.moves == Moves::Both;
+    if (colour.number < ConstraintColours::count)
+        return {colour.number, !moves_b(constraint.moves), colours_[colour.number].contacts++};
+    // A body with more constraints than colours is a hub: side a of blocks in which it may occur several times.
+    const std::uint32_t row_a = in.row_of_body[constraint.body_a], row_b = in.row_of_body[constraint.body_b];
+    const int overflow = both ? overflow_two_sided : overflow_one_sided;
+    const bool flipped =
+        both ? in.colours.used(constraint.body_b) > in.colours.used(constraint.body_a) : moves_b(constraint.moves);
+    ++colours_[overflow].contacts;
+    return {static_cast<std::uint8_t>(overflow), flipped,
+            hubs_[both ? 0 : 1].place(flipped ? row_b : row_a, flipped ? row_a : row_b, both)};
+}
+
+void BatchSolver::prepare_blocks(std::uint32_t unused_row) {
+    counts_ = {};
+    for (int i = 0; i < ConstraintColours::count; ++i) {
+        Colour& colour = colours_[i];
+        colour.on_static = i >= ConstraintColours::two_sided && i < ConstraintColours::on_sleeper;
+        colour.on_sleeper = i >= ConstraintColours::on_sleeper;
+        colour.sides = i >= ConstraintColours::two_sided ? Sides::OnlyB : Sides::Both;
+        colour.blocks.resize((colour.contacts + block_lanes - 1) / block_lanes);
+        if (colour.contacts == 0) continue;
+        counts_.colours |= std::uint64_t{1} << i;
+        clear_block(colour.blocks.back(), unused_row);
+    }
+    for (const int i : {overflow_two_sided, overflow_one_sided}) {
+        Colour& colour = colours_[i];
+        const HubBlocks& hub = hubs_[i - overflow_two_sided];
+        colour.on_static = i == overflow_one_sided;
+        colour.sides = Sides::Hub;
+        colour.blocks.resize(hub.size());
+        counts_.overflow += colour.contacts;
+        for (std::size_t block = 0; block < hub.size(); ++block) {
+            clear_block(colour.blocks[block], unused_row);
+            for (int lane = 0; lane < block_lanes; ++lane) colour.blocks[block].split[lane] = hub.split(block, lane);
+        }
+    }
+}
+
+void BatchSolver::load(const BatchInput& in, TaskRunner& tasks) {
+    for (Colour& colour : colours_) {
+        colour.contacts = 0;
+        colour.restitution = false;
+    }
+    for (HubBlocks& hub : hubs_) hub.clear();
+    slots_.resize(in.numbers.size());
+    const auto manifold = [&](std::size_t i) -> ContactManifold& {
+        return in.manifolds[in.constraints[in.numbers[i]].index];
+    };
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (i + prefetch_ahead < slots_.size()) detail::prefetch(manifold(i + prefetch_ahead).colour);
+        slots_[i] = place(in, in.constraints[in.numbers[i]], manifold(i).colour);
+        colours_[slots_[i].colour].restitution |= manifold(i).restitution > 0;
+    }
+    prepare_blocks(in.batch.unused_row());
+    parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + prefetch_ahead < end) detail::prefetch(manifold(i + prefetch_ahead));
+            const std::uint32_t number = in.numbers[i];
+            fill_lane(lane_of(slots_[i]), in.constraints[number], manifold(i), in.loads[number], in.lanes);
+        }
+    });
+}
+
+void BatchSolver::run_passes(Pass pass, const BatchInput& in, TaskRunner& tasks) {
+    const SolverSettings& settings = in.lanes.settings;
+    const float h = settings.sub_step();
+    const float frequency = std::min(settings.contact_frequency, max_frequency_share / h);
+    PassInput input{in.rows.data(),
+                    in.masses.data(),
+                    h,
+                    make_softness(frequency, settings.contact_damping_ratio, h),
+                    settings.push_out_speed,
+                    settings.restitution_threshold};
+    PassInput on_static = input;  // contacts with static and kinematic bodies are twice as stiff
+    on_static.softness = make_softness(2 * frequency, 0.5f * settings.contact_damping_ratio, h);
+    PassInput on_sleeper = input;
+    on_sleeper.softness = make_softness(sleeper_share * frequency, sleeper_share * settings.contact_damping_ratio, h);
+    const auto run = in.reference ? run_pass_reference : run_pass;
+    for (const int overflow : {overflow_two_sided, overflow_one_sided}) {
+        Colour& colour = colours_[overflow];
+        if (pass == Pass::FindImpacts && !colour.restitution) continue;
+        run(pass, colour.blocks.data(), colour.blocks.size(), colour.sides, colour.on_static ? on_static : input);
+    }
+    for (int i = 0; i < ConstraintColours::count; ++i) {
+        Colour& colour = colours_[i];
+        if (pass == Pass::FindImpacts && !colour.restitution) continue;
+        const PassInput& pass_input = colour.on_static ? on_static : colour.on_sleeper ? on_sleeper : input;
+        parallel_ranges(tasks, colour.blocks.size(), block_grain, [&](std::size_t begin, std::size_t end) {
+            run(pass, colour.blocks.data() + begin, end - begin, colour.sides, pass_input);
+        });
+    }
+}
+
+void BatchSolver::run(const BatchInput& in, TaskRunner& tasks) {
+    const SolverSettings& settings = in.lanes.settings;
+    const float h = settings.sub_step();
+    run_passes(Pass::Prepare, in, tasks);
+    const auto each_body = [&](auto&& work) {
+        parallel_ranges(tasks, in.batch.bodies, body_grain, [&](std::size_t begin, std::size_t end) {
+            const std::size_t first = in.batch.first_row + begin;
+            work(in.rows.subspan(first, end - begin), in.motions.subspan(first, end - begin));
+        });
+    };
+    for (int step = 0; step < settings.sub_steps; ++step) {
+        each_body(
+            [&](auto rows, auto motions) { integrate_velocities(rows, motions, step > 0, settings.speed_limits); });
+        solve_impacts(in, tasks);
+        if (step == 0) run_passes(Pass::WarmStart, in, tasks);
+        run_passes(Pass::Biased, in, tasks);
+        each_body([&](auto rows, auto motions) { integrate_poses(rows, motions, h); });
+        impacts_.correct_paths(in.rows, in.motions);
+        run_passes(Pass::Relax, in, tasks);
+    }
+}
+
+void BatchSolver::solve_impacts(const BatchInput& in, TaskRunner& tasks) {
+    const bool any = std::any_of(colours_.begin(), colours_.end(), [](const Colour& c) { return c.restitution; });
+    if (!any) return;
+    const SolverSettings& settings = in.lanes.settings;
+    const ImpactInput input{in.rows, in.masses, in.motions, settings.sub_step(), settings.restitution_threshold};
+    for (int round = 0; round < Impacts::max_rounds; ++round) {
+        run_passes(Pass::FindImpacts, in, tasks);
+        if (!impacts_.solve_round(colours_, input)) return;
+    }
+}
+
+void BatchSolver::store(const BatchInput& in, TaskRunner& tasks) {
+    parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + prefetch_ahead < end)
+                detail::prefetch(in.manifolds[in.constraints[in.numbers[i + prefetch_ahead]].index]);
+            const Constraint& constraint = in.constraints[in.numbers[i]];
+            in.results[in.numbers[i]] = store_lane(lane_of(slots_[i]), constraint, in.manifolds[constraint.index],
+                                                   in.rows[in.row_of_body[constraint.body_a]], in.lanes);
+        }
+    });
+}
+
+std::size_t BatchSolver::bytes() const {
+    std::size_t sum = slots_.capacity() * sizeof(Slot);
+    for (const Colour& colour : colours_) sum += colour.blocks.capacity() * sizeof(ContactBlock);
+    return sum;
+}
+
+}  // namespace fase::dynamics
