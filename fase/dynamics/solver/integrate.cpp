@@ -1,10 +1,13 @@
-/// Integrates velocities and poses, one body at a time.
+/// Integrates velocities and poses: four bodies at a time where nothing special happens to any of them, else one.
 #include "fase/dynamics/solver/integrate.hpp"
 
 #include "fase/dynamics/solver/rows.hpp"
+#include "fase/math/detail/float4.hpp"
 
 namespace fase::dynamics {
 namespace {
+
+constexpr float min_gyroscopic = 1e-8f;  // square of the radians per sub-step, above which unequal moments matter
 
 Vec3 without_locked(Vec3 v, unsigned locks) { return {locks & 1 ? 0 : v.x, locks & 2 ? 0 : v.y, locks & 4 ? 0 : v.z}; }
 /// Returns v, scaled to length `max` when it is longer. A NaN or infinite v is returned unchanged; finish() handles it.
@@ -30,6 +33,136 @@ template <int i> void rotate_about_axis(Quatd& turn, Vec3d& momentum, Vec3d mome
     turn = turn * q;
 }
 
+void integrate_velocity(SolverBody& body, SolverMotion& motion, bool warm_start, SpeedLimits limits) {
+    if (!motion.is_dynamic) return;
+    Vec3 velocity = read(body.velocity), spin = read(body.spin);
+    motion.velocity_before = without_locked(velocity, motion.locks);
+    Vec3 pushed, turned;
+    if (warm_start) {
+        pushed = velocity - motion.free_velocity;
+        turned = spin - motion.free_spin;
+    }
+    velocity = without_locked((velocity + motion.velocity_step) * motion.linear_factor, motion.locks);
+    spin = without_locked((spin + motion.spin_step) * motion.angular_factor, motion.locks >> 3);
+    velocity = clamp_length(velocity, limits.linear, motion.clamped);
+    spin = clamp_length(spin, limits.angular, motion.clamped);
+    motion.free_velocity = velocity;
+    motion.free_spin = spin;
+    write(body.velocity, velocity + pushed);
+    write(body.spin, spin + turned);
+}
+
+void integrate_pose(SolverBody& body, SolverMotion& motion, float h) {
+    const Vec3 velocity = read(body.velocity);
+    Vec3 spin = read(body.spin);
+    const bool free = motion.is_dynamic && velocity == motion.free_velocity;
+    const Vec3 mean = free ? (velocity + motion.velocity_before) * 0.5f : velocity;
+    write(body.moved, read(body.moved) + mean * h);
+    write(body.rotated, read(body.rotated) + spin * h);
+    Quat turned = motion.turned;
+    const float fast = length_squared(spin) * h * h;
+    if (motion.gyroscopic && fast > min_gyroscopic) {
+        const Quatd start = normalized(to_double(motion.rotation));
+        const Vec3d moments = to_double(motion.moments);
+        Quatd rotation = normalized(to_double(turned) * start);
+        Vec3d momentum = multiply(rotate_back(rotation, to_double(spin)), moments);
+        rotate_torque_free(rotation, momentum, moments, static_cast<double>(h));
+        const Vec3d principal{momentum.x / moments.x, momentum.y / moments.y, momentum.z / moments.z};
+        const Vec3 after = to_float(rotate(rotation, principal));
+        motion.free_spin += after - spin;
+        write(body.spin, after);
+        turned = to_float(normalized(rotation * conjugate(start)));
+    } else if (fast > 0) {
+        // tan(angle / 2) / angle, so that the normalised quaternion has the exact angle.
+        const float x = 0.25f * fast;
+        const float scale = x < 1 ? 0.5f * (15 - x) / (15 - 6 * x) : 0.78f;
+        const Vec3 t = spin * (h * scale);
+        turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
+    }
+    motion.turned = turned;
+}
+
+// The same for four bodies, in the same order of operations.
+
+using detail::any;
+using detail::Float4;
+using detail::load_four;
+using detail::store_four;
+
+/// Loads a vector, and the float after it, of four objects.
+template <class F> Vec3Of<Float4> load_vectors(const F& from, Float4& after) {
+    const auto [x, y, z, w] = load_four(from);
+    after = w;
+    return {x, y, z};
+}
+template <class F> void store_vectors(Vec3Of<Float4> v, Float4 after, const F& to) {
+    store_four(v.x, v.y, v.z, after, to);
+}
+
+/// Whether nothing but forces and damping changes the velocities: the speed limits are far.
+bool integrate_four_velocities(SolverBody* bodies, SolverMotion* motions, bool warm_start, SpeedLimits limits) {
+    for (int k = 0; k < 4; ++k)
+        if (!motions[k].is_dynamic || motions[k].locks != 0) return false;
+    Float4 mass, unused, linear_factor, angular_factor;
+    const Vec3Of<Float4> before = load_vectors([&](int k) { return bodies[k].velocity; }, mass);
+    const Vec3Of<Float4> spin_before = load_vectors([&](int k) { return bodies[k].spin; }, unused);
+    const Vec3Of<Float4> step = load_vectors([&](int k) { return &motions[k].velocity_step.x; }, linear_factor);
+    const Vec3Of<Float4> spin_step = load_vectors([&](int k) { return &motions[k].spin_step.x; }, angular_factor);
+    const Vec3Of<Float4> velocity = (before + step) * linear_factor, spin = (spin_before + spin_step) * angular_factor;
+    const Float4 max_linear = limits.linear * limits.linear, max_angular = limits.angular * limits.angular;
+    if (any((max_linear < length_squared(velocity)) | (max_angular < length_squared(spin)))) return false;
+    Vec3Of<Float4> pushed, turned;
+    if (warm_start) {
+        Float4 rest;
+        pushed = before - load_vectors([&](int k) { return &motions[k].free_velocity.x; }, rest);
+        turned = spin_before - load_vectors([&](int k) { return &motions[k].free_spin.x; }, rest);
+    }
+    store_vectors(before, Float4(), [&](int k) { return &motions[k].velocity_before.x; });
+    store_vectors(velocity, Float4(), [&](int k) { return &motions[k].free_velocity.x; });
+    store_vectors(spin, Float4(), [&](int k) { return &motions[k].free_spin.x; });
+    store_vectors(velocity + pushed, mass, [&](int k) { return bodies[k].velocity; });
+    store_vectors(spin + turned, unused, [&](int k) { return bodies[k].spin; });
+    return true;
+}
+
+bool integrate_four_poses(SolverBody* bodies, SolverMotion* motions, float h) {
+    for (int k = 0; k < 4; ++k)
+        if (!motions[k].is_dynamic) return false;
+    Float4 mass, unused;
+    const Vec3Of<Float4> velocity = load_vectors([&](int k) { return bodies[k].velocity; }, mass);
+    const Vec3Of<Float4> spin = load_vectors([&](int k) { return bodies[k].spin; }, unused);
+    const Float4 fast = length_squared(spin) * h * h;
+    const Float4::Mask turns = Float4(0.0f) < fast;
+    for (int k = 0; k < 4; ++k)
+        if (motions[k].gyroscopic && fast.v[k] > min_gyroscopic) return false;
+    const Vec3Of<Float4> free = load_vectors([&](int k) { return &motions[k].free_velocity.x; }, unused);
+    const Vec3Of<Float4> before = load_vectors([&](int k) { return &motions[k].velocity_before.x; }, unused);
+    const Float4::Mask is_free = (velocity.x == free.x) & (velocity.y == free.y) & (velocity.z == free.z);
+    const Vec3Of<Float4> mean = (velocity + before) * Float4(0.5f);
+    const Vec3Of<Float4> by{select(is_free, mean.x, velocity.x), select(is_free, mean.y, velocity.y),
+                            select(is_free, mean.z, velocity.z)};
+    const Vec3Of<Float4> moved = load_vectors([&](int k) { return bodies[k].moved; }, unused) + by * Float4(h);
+    store_vectors(moved, unused, [&](int k) { return bodies[k].moved; });
+    const Vec3Of<Float4> rotated = load_vectors([&](int k) { return bodies[k].rotated; }, unused) + spin * Float4(h);
+    store_vectors(rotated, unused, [&](int k) { return bodies[k].rotated; });
+    if (!any(turns)) return true;
+    const auto [x, y, z, w] = load_four([&](int k) { return &motions[k].turned.x; });
+    const Float4 share = Float4(0.25f) * fast;
+    const Float4 scale =
+        select(share < Float4(1.0f), Float4(0.5f) * (Float4(15.0f) - share) / (Float4(15.0f) - Float4(6.0f) * share),
+               Float4(0.78f));
+    const Vec3Of<Float4> t = spin * (Float4(h) * scale);
+    const QuatOf<Float4> q = QuatOf<Float4>{t.x, t.y, t.z, Float4(1.0f)} * QuatOf<Float4>{x, y, z, w};
+    const Float4 length = sqrt(length_squared(q)), s = Float4(1.0f) / length;
+    const Float4::Mask valid = Float4(0.0f) < length;
+    const auto turned = [&](Float4 next, float otherwise, Float4 now) {
+        return select(turns, select(valid, next * s, otherwise), now);
+    };
+    store_four(turned(q.x, 0, x), turned(q.y, 0, y), turned(q.z, 0, z), turned(q.w, 1, w),
+               [&](int k) { return &motions[k].turned.x; });
+    return true;
+}
+
 }  // namespace
 
 double approximate_tangent(double x) {
@@ -52,60 +185,21 @@ void rotate_torque_free(Quatd& rotation, Vec3d& momentum, Vec3d moments, double 
 
 void integrate_velocities(std::span<SolverBody> bodies, std::span<SolverMotion> motions, bool warm_start,
                           SpeedLimits limits) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        SolverBody& body = bodies[i];
-        SolverMotion& motion = motions[i];
-        if (!motion.is_dynamic) continue;
-        Vec3 velocity = read(body.velocity), spin = read(body.spin);
-        motion.velocity_before = without_locked(velocity, motion.locks);
-        Vec3 pushed, turned;
-        if (warm_start) {
-            pushed = velocity - motion.free_velocity;
-            turned = spin - motion.free_spin;
-        }
-        velocity = without_locked((velocity + motion.velocity_step) * motion.linear_factor, motion.locks);
-        spin = without_locked((spin + motion.spin_step) * motion.angular_factor, motion.locks >> 3);
-        velocity = clamp_length(velocity, limits.linear, motion.clamped);
-        spin = clamp_length(spin, limits.angular, motion.clamped);
-        motion.free_velocity = velocity;
-        motion.free_spin = spin;
-        write(body.velocity, velocity + pushed);
-        write(body.spin, spin + turned);
+    std::size_t i = 0;
+    for (; i + 4 <= bodies.size(); i += 4) {
+        if (integrate_four_velocities(&bodies[i], &motions[i], warm_start, limits)) continue;
+        for (std::size_t k = i; k < i + 4; ++k) integrate_velocity(bodies[k], motions[k], warm_start, limits);
     }
+    for (; i < bodies.size(); ++i) integrate_velocity(bodies[i], motions[i], warm_start, limits);
 }
 
 void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motions, float h) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        SolverBody& body = bodies[i];
-        SolverMotion& motion = motions[i];
-        const Vec3 velocity = read(body.velocity);
-        Vec3 spin = read(body.spin);
-        const bool free = motion.is_dynamic && velocity == motion.free_velocity;
-        const Vec3 mean = free ? (velocity + motion.velocity_before) * 0.5f : velocity;
-        write(body.moved, read(body.moved) + mean * h);
-        write(body.rotated, read(body.rotated) + spin * h);
-        Quat turned = motion.turned;
-        const float fast = length_squared(spin) * h * h;
-        if (motion.gyroscopic && fast > 1e-8f) {
-            const Quatd start = normalized(to_double(motion.rotation));
-            const Vec3d moments = to_double(motion.moments);
-            Quatd rotation = normalized(to_double(turned) * start);
-            Vec3d momentum = multiply(rotate_back(rotation, to_double(spin)), moments);
-            rotate_torque_free(rotation, momentum, moments, static_cast<double>(h));
-            const Vec3d principal{momentum.x / moments.x, momentum.y / moments.y, momentum.z / moments.z};
-            const Vec3 after = to_float(rotate(rotation, principal));
-            motion.free_spin += after - spin;
-            write(body.spin, after);
-            turned = to_float(normalized(rotation * conjugate(start)));
-        } else if (fast > 0) {
-            // tan(angle / 2) / angle, so that the normalised quaternion has the exact angle.
-            const float x = 0.25f * fast;
-            const float scale = x < 1 ? 0.5f * (15 - x) / (15 - 6 * x) : 0.78f;
-            const Vec3 t = spin * (h * scale);
-            turned = normalized(Quat{t.x, t.y, t.z, 1} * turned);
-        }
-        motion.turned = turned;
+    std::size_t i = 0;
+    for (; i + 4 <= bodies.size(); i += 4) {
+        if (integrate_four_poses(&bodies[i], &motions[i], h)) continue;
+        for (std::size_t k = i; k < i + 4; ++k) integrate_pose(bodies[k], motions[k], h);
     }
+    for (; i < bodies.size(); ++i) integrate_pose(bodies[i], motions[i], h);
 }
 
 }  // namespace fase::dynamics

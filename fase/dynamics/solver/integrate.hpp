@@ -11,20 +11,24 @@ namespace fase::dynamics {
 /// The values of a SolverBody that only integration uses.
 struct alignas(64) SolverMotion {
     Vec3 velocity_step;       ///< m/s that gravity and forces add per sub-step
-    Vec3 spin_step;           ///< rad/s that torques add per sub-step
     float linear_factor = 1;  ///< damping factor of the velocity per sub-step
+    Vec3 spin_step;           ///< rad/s that torques add per sub-step
     float angular_factor = 1;
-    Vec3 moments;          ///< principal, kg m²; 0 for bodies with an axis that cannot rotate
-    Quat rotation;         ///< principal axes to world, at the beginning of the step
     Vec3 velocity_before;  ///< at the beginning of the sub-step
-    Vec3 free_velocity;    ///< after forces, before contacts; the change by contacts is the difference to it
+    float unused_0 = 0;
+    Vec3 free_velocity;  ///< after forces, before contacts; the change by contacts is the difference to it
+    float unused_1 = 0;
     Vec3 free_spin;
-    Quat turned;  ///< rotation since the beginning of the step
+    float unused_2 = 0;
+    Quat turned;    ///< rotation since the beginning of the step
+    Quat rotation;  ///< principal axes to world, at the beginning of the step
+    Vec3 moments;   ///< principal, kg m²; 0 for bodies with an axis that cannot rotate
     std::uint8_t locks = 0;
     bool gyroscopic = false;  ///< unequal moments and no angular lock: the angular velocity changes without torque
     bool is_dynamic = false;  ///< false: kinematic, forces do not act
     bool clamped = false;     ///< the speed was clamped in this step
 };
+static_assert(sizeof(SolverMotion) == 128);
 
 /// The speed limits of Settings: m/s and rad/s.
 struct SpeedLimits {

@@ -1,6 +1,7 @@
 #pragma once
 /// Four floats in one vector, with the vector types of GCC and Clang: they need no instruction set beyond the one that
 /// all processors of the target have. Vectors, quaternions and matrices of Float4 do the same for four objects.
+#include <array>
 #include <cmath>
 
 namespace fase::detail {
@@ -27,11 +28,19 @@ struct Float4 {
     friend Float4 operator/(Float4 a, Float4 b) { return a.v / b.v; }
     friend Float4 operator-(Float4 a) { return -a.v; }
     friend Mask operator<(Float4 a, Float4 b) { return a.v < b.v; }
+    friend Mask operator==(Float4 a, Float4 b) { return a.v == b.v; }
     friend Float4 select(Mask mask, Float4 yes, Float4 no) { return mask ? yes.v : no.v; }
     friend Float4 sqrt(Float4 a) {
         return Lanes{std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])};
     }
 };
+
+/// Whether any lane of a mask is true.
+inline bool any(Float4::Mask mask) {
+    using Halves = long long __attribute__((vector_size(16)));
+    const auto halves = reinterpret_cast<Halves>(mask);
+    return (halves[0] | halves[1]) != 0;
+}
 
 /// Transposes four rows of four lanes.
 inline void transpose(Float4 (&rows)[4]) {
@@ -43,6 +52,20 @@ inline void transpose(Float4 (&rows)[4]) {
     rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
     rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
     rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+/// Loads four floats of each of four objects: from(k) points to those of object k. Number i of the result holds float i
+/// of every object.
+template <class F> std::array<Float4, 4> load_four(const F& from) {
+    Float4 rows[4] = {Float4::load(from(0)), Float4::load(from(1)), Float4::load(from(2)), Float4::load(from(3))};
+    transpose(rows);
+    return {rows[0], rows[1], rows[2], rows[3]};
+}
+/// The inverse of load_four().
+template <class F> void store_four(Float4 x, Float4 y, Float4 z, Float4 w, const F& to) {
+    Float4 rows[4] = {x, y, z, w};
+    transpose(rows);
+    for (int k = 0; k < 4; ++k) rows[k].store(to(k));
 }
 
 }  // namespace fase::detail

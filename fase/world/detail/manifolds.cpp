@@ -15,6 +15,7 @@ using dynamics::Contact;
 using dynamics::ContactManifold;
 
 using detail::Float4;
+using detail::load_four;
 
 PairMotion pair_motion(const Contact& contact, const BodyMotion& a, const BodyMotion& b) {
     return {{a.rotation, contact.rotation_a},
@@ -82,13 +83,6 @@ float nearest_of(std::span<const ContactManifold> manifolds) {
     return nearest;
 }
 
-/// Loads the same four floats of four objects: get(k) returns where those of object k are. Component i of the result
-/// holds float i of every object.
-template <class F> std::array<Float4, 4> load_four(const F& get) {
-    Float4 rows[4] = {Float4::load(get(0)), Float4::load(get(1)), Float4::load(get(2)), Float4::load(get(3))};
-    transpose(rows);
-    return {rows[0], rows[1], rows[2], rows[3]};
-}
 template <class F> QuatOf<Float4> load_quats(const F& get) {
     const auto [x, y, z, w] = load_four([&](int k) { return &get(k).x; });
     return {x, y, z, w};
@@ -212,18 +206,16 @@ unsigned reuse_four(const ReuseInput (&inputs)[reused_together]) {
         separation[i] = by_points.separation(first_separation[i], xs[i], ys[i]);
     }
     transpose(separation);
-    float rotation_a[4][4];
+    Quat rotation_a[4];
+    const auto& [qx, qy, qz, qw] = motion.a.rotation;
+    store_four(qx, qy, qz, qw, [&](int k) { return &rotation_a[k].x; });
     unsigned bits = 0;
-    const QuatOf<Float4>& q = motion.a.rotation;
-    Float4 rotation[4] = {q.x, q.y, q.z, q.w};
-    transpose(rotation);
     for (int k = 0; k < 4; ++k) {
         ContactManifold& m = *inputs[k].manifold;
         if (upright[k] != 0) separation[k].store(m.separation);
         if (reused[k] == 0) continue;
         bits |= 1u << k;
-        rotation[k].store(rotation_a[k]);
-        turn_frame(m, {rotation_a[k][0], rotation_a[k][1], rotation_a[k][2], rotation_a[k][3]});
+        turn_frame(m, rotation_a[k]);
         inputs[k].contact->nearest = nearest_of({&m, 1});
     }
     return bits;
