@@ -4,15 +4,16 @@
 #include <algorithm>
 
 #include "fase/core/detail/prefetch.hpp"
+#include "fase/core/no_index.hpp"
 #include "fase/dynamics/solver/rows.hpp"
 
 namespace fase::dynamics {
 namespace {
 
 constexpr std::size_t body_grain = 256;
-constexpr std::size_t contact_grain = 128;
+constexpr std::size_t four_grain = 32;
 constexpr std::size_t block_grain = 24;
-constexpr std::size_t prefetch_ahead = 6;  // manifolds
+constexpr std::size_t prefetch_ahead = 6, fours_ahead = 2;  // manifolds
 constexpr int overflow_two_sided = ConstraintColours::count, overflow_one_sided = ConstraintColours::count + 1;
 // The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
 // at an eighth, pyramids vibrate.
@@ -95,11 +96,53 @@ void BatchSolver::load(const BatchInput& in, TaskRunner& tasks) {
         colours_[slots_[i].colour].restitution |= manifold(i).restitution > 0;
     }
     prepare_blocks(in.batch.unused_row());
-    parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
+    list_lanes();
+    for_each_four(in, tasks, [&](FourLanes& four, const Four& of) {
+        const ContactManifold* manifolds[4];
+        for (int k = 0; k < 4; ++k) manifolds[k] = of.manifolds[k];
+        float loads[4];
+        for (int k = 0; k < 4; ++k) loads[k] = of.constraints[k] ? in.loads[of.numbers[k]] : 0;
+        if (of.all && fill_four(*four.block, four.lane, of.constraints, manifolds, of.flipped, loads, in.lanes)) return;
+        for (int k = 0; k < 4; ++k)
+            if (of.constraints[k])
+                fill_lane({four.block, four.lane + k, of.flipped[k]}, *of.constraints[k], *manifolds[k], loads[k],
+                          in.lanes);
+    });
+}
+
+void BatchSolver::list_lanes() {
+    fours_.clear();
+    std::array<std::uint32_t, ConstraintColours::count + 2> first;
+    for (std::size_t c = 0; c < colours_.size(); ++c) {
+        first[c] = static_cast<std::uint32_t>(4 * fours_.size());
+        for (ContactBlock& block : colours_[c].blocks)
+            for (int lane = 0; lane < block_lanes; lane += 4) fours_.push_back({&block, lane});
+    }
+    slot_of_lane_.assign(4 * fours_.size(), no_index);
+    for (std::size_t i = 0; i < slots_.size(); ++i)
+        slot_of_lane_[first[slots_[i].colour] + slots_[i].index] = static_cast<std::uint32_t>(i);
+}
+
+template <class F> void BatchSolver::for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f) {
+    parallel_ranges(tasks, fours_.size(), four_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (i + prefetch_ahead < end) detail::prefetch(manifold(i + prefetch_ahead));
-            const std::uint32_t number = in.numbers[i];
-            fill_lane(lane_of(slots_[i]), in.constraints[number], manifold(i), in.loads[number], in.lanes);
+            if (i + fours_ahead < end)
+                for (std::size_t k = 0; k < 4; ++k)
+                    if (const std::uint32_t slot = slot_of_lane_[4 * (i + fours_ahead) + k]; slot != no_index)
+                        detail::prefetch(in.manifolds[in.constraints[in.numbers[slot]].index]);
+            Four of;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::uint32_t slot = slot_of_lane_[4 * i + k];
+                if (slot == no_index) {
+                    of.all = false;
+                    continue;
+                }
+                of.numbers[k] = in.numbers[slot];
+                of.constraints[k] = &in.constraints[of.numbers[k]];
+                of.manifolds[k] = &in.manifolds[of.constraints[k]->index];
+                of.flipped[k] = slots_[slot].flipped;
+            }
+            f(fours_[i], of);
         }
     });
 }
@@ -168,19 +211,23 @@ void BatchSolver::solve_impacts(const BatchInput& in, TaskRunner& tasks) {
 }
 
 void BatchSolver::store(const BatchInput& in, TaskRunner& tasks) {
-    parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (i + prefetch_ahead < end)
-                detail::prefetch(in.manifolds[in.constraints[in.numbers[i + prefetch_ahead]].index]);
-            const Constraint& constraint = in.constraints[in.numbers[i]];
-            in.results[in.numbers[i]] = store_lane(lane_of(slots_[i]), constraint, in.manifolds[constraint.index],
-                                                   in.rows[in.row_of_body[constraint.body_a]], in.lanes);
+    for_each_four(in, tasks, [&](FourLanes& four, const Four& of) {
+        if (of.all) {
+            ContactResult* results[4];
+            for (int k = 0; k < 4; ++k) results[k] = &in.results[of.numbers[k]];
+            store_four_lanes(*four.block, four.lane, of.constraints, of.manifolds, of.flipped, results, in.lanes);
+            return;
         }
+        for (int k = 0; k < 4; ++k)
+            if (of.constraints[k])
+                in.results[of.numbers[k]] = store_lane({four.block, four.lane + k, of.flipped[k]}, *of.constraints[k],
+                                                       *of.manifolds[k], in.lanes);
     });
 }
 
 std::size_t BatchSolver::bytes() const {
-    std::size_t sum = slots_.capacity() * sizeof(Slot);
+    std::size_t sum = slots_.capacity() * sizeof(Slot) + fours_.capacity() * sizeof(FourLanes) +
+                      slot_of_lane_.capacity() * sizeof slot_of_lane_[0];
     for (const Colour& colour : colours_) sum += colour.blocks.capacity() * sizeof(ContactBlock);
     return sum;
 }

@@ -59,11 +59,22 @@ private:
     /// Returns the place of a constraint in the blocks of its colour, or of its hub.
     Slot place(const BatchInput& in, const Constraint& constraint, ConstraintColour colour);
     void prepare_blocks(std::uint32_t unused_row);
-    [[nodiscard]] Lane lane_of(const Slot& slot) {
-        return {&colours_[slot.colour].blocks[slot.index / block_lanes], static_cast<int>(slot.index % block_lanes),
-                slot.flipped};
-    }
-    /// Fills the blocks in the order of the constraints.
+    /// Four lanes of a block, which one SIMD vector fills.
+    struct FourLanes {
+        ContactBlock* block;
+        int lane;
+    };
+    /// The constraints of four lanes; null for unused ones.
+    struct Four {
+        std::uint32_t numbers[4] = {};
+        const Constraint* constraints[4] = {};
+        ContactManifold* manifolds[4] = {};
+        bool flipped[4] = {};
+        bool all = true;  ///< no lane is unused
+    };
+    void list_lanes();
+    /// Calls f(FourLanes&, Four) for all blocks, in parallel.
+    template <class F> void for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f);
     void load(const BatchInput& in, TaskRunner& tasks);
     void run(const BatchInput& in, TaskRunner& tasks);
     void run_passes(Pass pass, const BatchInput& in, TaskRunner& tasks);
@@ -72,6 +83,8 @@ private:
 
     std::array<Colour, ConstraintColours::count + 2> colours_;  // the last two: overflow, two-sided and one-sided
     std::vector<Slot> slots_;                                   // by number of the batch
+    std::vector<FourLanes> fours_;                              // of all blocks
+    std::vector<std::uint32_t> slot_of_lane_;                   // four for each of these; no_index: unused
     std::array<HubBlocks, 2> hubs_;  // of two-sided contacts, and of those with static bodies
     Impacts impacts_;
     BatchCounts counts_;

@@ -49,9 +49,18 @@ void clear_block(ContactBlock& block, std::uint32_t unused_row);
 /// different lanes.
 void fill_lane(const Lane& lane, const Constraint& constraint, const ContactManifold& manifold, float known_load,
                const LaneInput& in);
-/// Writes the impulses and separations of a lane into its manifold, and returns what happened. `row_a`: of the
-/// constraint's body a. Thread-safe for different lanes.
+/// The same for four lanes from `lane` on, a multiple of 4; constraint k goes to lane + k. Returns false, and leaves
+/// the lanes to fill_lane(), when a support turns.
+[[nodiscard]] bool fill_four(ContactBlock& block, int lane, const Constraint* const (&constraints)[4],
+                             const ContactManifold* const (&manifolds)[4], const bool (&flipped)[4],
+                             const float (&known_loads)[4], const LaneInput& in);
+/// Writes the impulses and separations of a lane into its manifold, and returns what happened. Thread-safe for
+/// different lanes.
 [[nodiscard]] ContactResult store_lane(const Lane& lane, const Constraint& constraint, ContactManifold& manifold,
-                                       const SolverBody& row_a, const LaneInput& in);
+                                       const LaneInput& in);
+/// The same for four lanes.
+void store_four_lanes(const ContactBlock& block, int lane, const Constraint* const (&constraints)[4],
+                      ContactManifold* const (&manifolds)[4], const bool (&flipped)[4],
+                      ContactResult* const (&results)[4], const LaneInput& in);
 
 }  // namespace fase::dynamics
