@@ -45,6 +45,24 @@ void wake_at(const StepContext& context, const ContactTable& contacts, const Con
     }
 }
 
+/// Removes the blows on awake bodies that no touching bodies connect to a sleeper: they wake nothing.
+void drop_blows_far_from_sleepers(const BodyTable& bodies, const Constraints& constraints, IslandLists& lists) {
+    if (lists.blows.empty()) return;
+    const auto is_asleep = [&](std::uint32_t body) { return bodies.traits[body].motion_state == MotionState::Asleep; };
+    lists.sets.reset(bodies.traits.size());
+    lists.near_sleeper.assign(bodies.traits.size(), 0);
+    for (const Constraint& c : constraints.all)
+        if (c.touches && bodies.traits[c.body_a].kind == BodyKind::Dynamic &&
+            bodies.traits[c.body_b].kind == BodyKind::Dynamic)
+            lists.sets.unite(c.body_a, c.body_b);
+    for (const Constraint& c : constraints.all)
+        for (const std::uint32_t body : {c.body_a, c.body_b})
+            if (c.touches && is_asleep(body)) lists.near_sleeper[lists.sets.find(body)] = 1;
+    std::erase_if(lists.blows, [&](const Blow& blow) {
+        return !is_asleep(blow.body) && !lists.near_sleeper[lists.sets.find(blow.body)];
+    });
+}
+
 }  // namespace
 
 void wake_touched(const StepContext& context, const MotionStates& state, Constraints& constraints, IslandLists& lists) {
@@ -54,7 +72,8 @@ void wake_touched(const StepContext& context, const MotionStates& state, Constra
         for (const Constraint& constraint : constraints.all)
             wake_at(context, state.contacts, constraint, state.bodies, lists.blows);
     const std::size_t before = state.bodies.awake.size();
-    for (const Blow& blow : lists.blows) wake_struck(state, settings, blow.body, blow.momentum);
+    drop_blows_far_from_sleepers(state.bodies, constraints, lists);
+    wake_struck(state, settings, lists.blows);
     wake_requested_islands(state, settings);
     // Woken bodies add their resting contacts, which are still valid because nothing has moved since.
     if (state.bodies.awake.size() != before)

@@ -74,32 +74,55 @@ void wake_requested_islands(const MotionStates& state, const Settings& settings)
     move_to_awake(state, bodies);
 }
 
-void wake_struck(const MotionStates& state, const Settings& settings, std::uint32_t body, float momentum) {
+namespace {
+
+/// Appends the bodies behind one that is struck with `momentum` (kg m/s), as far as the blow may move them.
+void add_behind(const BodyContacts& touching, const Settings& settings, const Blow& blow,
+                std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& reached) {
     // So much mass could reach a tenth of the sleep speed together.
-    float budget = momentum / std::max(0.1f * settings.sleep_linear_speed, 1e-6f);
-    std::vector<std::uint32_t> reached{body}, bodies;
-    state.bodies.marks.resize(state.bodies.traits.size(), 0);
-    state.bodies.marks[body] = 1;
-    for (std::size_t begin = 0; begin < reached.size();) {
+    float budget = blow.momentum / std::max(0.1f * settings.sleep_linear_speed, 1e-6f);
+    const std::size_t first = reached.size();
+    reached.push_back(blow.body);
+    marks[blow.body] = 1;
+    for (std::size_t begin = first; begin < reached.size();) {
         const std::size_t end = reached.size();
         std::sort(reached.begin() + static_cast<std::ptrdiff_t>(begin), reached.end());
-        for (std::size_t i = begin; i < end; ++i) budget -= state.bodies.traits[reached[i]].mass.mass;
+        for (std::size_t i = begin; i < end; ++i) budget -= touching.bodies.traits[reached[i]].mass.mass;
         for (std::size_t i = begin; i < end && budget > 0; ++i)
-            for_each_touched(state.touching(), reached[i], [&](const Contact&, std::uint32_t other) {
-                if (state.bodies.marks[other]) return;
-                state.bodies.marks[other] = 1;
+            for_each_touched(touching, reached[i], [&](const Contact&, std::uint32_t other) {
+                if (marks[other]) return;
+                marks[other] = 1;
                 reached.push_back(other);
             });
         begin = end;
     }
-    for (const std::uint32_t b : reached) {
-        state.bodies.marks[b] = 0;
-        const BodyTraits& traits = state.bodies.traits[b];
-        if (traits.motion_state == MotionState::Asleep && !traits.quarantined) bodies.push_back(b);
+    for (std::size_t i = first; i < reached.size(); ++i) marks[reached[i]] = 0;
+}
+
+}  // namespace
+
+void wake_struck(const MotionStates& state, const Settings& settings, std::vector<Blow>& blows) {
+    if (blows.empty()) return;
+    // The hardest blow on a body reaches what the others reach.
+    std::sort(blows.begin(), blows.end(), [](const Blow& a, const Blow& b) {
+        return a.body != b.body ? a.body < b.body : a.momentum > b.momentum;
+    });
+    blows.erase(std::unique(blows.begin(), blows.end(), [](const Blow& a, const Blow& b) { return a.body == b.body; }),
+                blows.end());
+    BodyTable& bodies = state.bodies;
+    bodies.marks.resize(bodies.traits.size(), 0);
+    std::vector<std::uint32_t> reached, woken;
+    for (const Blow& blow : blows) {
+        reached.clear();
+        add_behind(state.touching(), settings, blow, bodies.marks, reached);
+        for (const std::uint32_t body : reached)
+            if (bodies.traits[body].motion_state == MotionState::Asleep && !bodies.traits[body].quarantined)
+                woken.push_back(body);
     }
-    for (const std::uint32_t b : bodies) restart_rest(state.bodies, b);
-    std::sort(bodies.begin(), bodies.end());
-    move_to_awake(state, bodies);
+    std::sort(woken.begin(), woken.end());
+    woken.erase(std::unique(woken.begin(), woken.end()), woken.end());
+    for (const std::uint32_t body : woken) restart_rest(bodies, body);
+    move_to_awake(state, woken);
 }
 
 }  // namespace fase

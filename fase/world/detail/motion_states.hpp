@@ -6,6 +6,7 @@
 
 #include "fase/world/detail/contacts.hpp"
 #include "fase/world/detail/query_trees.hpp"
+#include "fase/world/detail/step_lists.hpp"
 #include "fase/world/detail/tables.hpp"
 #include "fase/world/events.hpp"
 #include "fase/world/settings.hpp"
@@ -57,8 +58,9 @@ void disturb(BodyTable& bodies, const Settings& settings, std::uint32_t body);
 /// Wakes the islands of all bodies in BodyTable::to_wake, and what they carry. Restarts the rest of the requested
 /// bodies; the others stay awake for at least Settings::time_to_sleep.
 void wake_requested_islands(const MotionStates& state, const Settings& settings);
-/// Wakes the sleeping bodies behind one that is struck with `momentum` (kg m/s), as far as the blow may move them.
-void wake_struck(const MotionStates& state, const Settings& settings, std::uint32_t body, float momentum);
+/// Wakes the sleeping bodies behind those that are struck, as far as each blow may move them. Sorts the blows, and
+/// keeps the hardest on each body.
+void wake_struck(const MotionStates& state, const Settings& settings, std::vector<Blow>& blows);
 /// Whether the other body of a contact lies on `lower`.
 [[nodiscard]] bool carries(const dynamics::ManifoldPool& manifolds, Vec3 gravity, const dynamics::Contact& contact,
                            std::uint32_t lower);

@@ -39,7 +39,8 @@ struct Blow {
 /// Inside "islands". Its result is BodyMotion::island.
 struct IslandLists {
     std::vector<Blow> blows;
-    dynamics::DisjointSets sets;  ///< of bodies
+    dynamics::DisjointSets sets;             ///< of bodies
+    std::vector<std::uint8_t> near_sleeper;  ///< by body, in wake_touched(): 1: its set holds a sleeper
 };
 
 /// Whether an island may fall asleep.
