@@ -49,6 +49,21 @@ void keep_below(const StepContext& context, const BodyContacts& touching, std::u
         });
 }
 
+/// Lists the moving dynamic bodies, which are marked, that touch a dynamic body at rest. O(active contacts).
+void list_beside_rested(const BodyTable& bodies, const ContactTable& contacts, SleepLists& lists) {
+    std::vector<std::uint32_t>& list = lists.beside_rested;
+    list.clear();
+    const auto is_dynamic = [&](std::uint32_t body) { return bodies.traits[body].kind == BodyKind::Dynamic; };
+    for (const std::uint32_t index : contacts.active.values) {
+        const Contact& c = contacts[index];
+        if (!c.touching || c.sensor || bodies.marks[c.body_a] == bodies.marks[c.body_b]) continue;
+        if (is_dynamic(c.body_a) && is_dynamic(c.body_b)) list.push_back(bodies.marks[c.body_a] ? c.body_a : c.body_b);
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    std::erase_if(list, [&](std::uint32_t body) { return bodies.traits[body].motion_state != MotionState::Awake; });
+}
+
 /// Fills kept_awake and its marks: bodies that move, what touches them, and all that these carry. A sleeper thus lies
 /// on sleepers and static bodies only, and touches nothing that moves.
 void find_kept_awake(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
@@ -70,8 +85,8 @@ void find_kept_awake(const StepContext& context, const ColliderTable& colliders,
             ++moving;
         }
     if (moving == bodies.awake.size() && bodies.asleep.bodies.empty()) return;
-    for (const std::uint32_t body : bodies.awake) {
-        if (is_rested(bodies, context.settings, body) || bodies.traits[body].kind != BodyKind::Dynamic) continue;
+    list_beside_rested(bodies, contacts, lists);
+    for (const std::uint32_t body : lists.beside_rested) {
         keep_below(context, touching, body, lists, bodies.marks);
         for_each_touched(touching, body, [&](const Contact&, std::uint32_t other) {
             if (bodies.marks[other]) return;

@@ -54,6 +54,8 @@ struct SleepLists {
     std::vector<IslandActivity> activity;   ///< by island
     std::vector<std::uint32_t> kept_awake;  ///< bodies
     std::vector<std::uint32_t> below;       ///< bodies, inside keep_below()
+    /// Inside find_kept_awake(): moving bodies that touch one at rest, ascending.
+    std::vector<std::uint32_t> beside_rested;
 };
 
 }  // namespace fase
