@@ -79,7 +79,8 @@ public:
     [[nodiscard]] std::size_t body_count() const;
     [[nodiscard]] const Settings& settings() const;
 
-    // Changing. A change that may move a body wakes it.
+    // Changing. A change that may move a body wakes it, unless it is quarantined (BodyState::quarantined): then the
+    // call succeeds and stores the value, but no step moves the body.
     Result<void> set_settings(const Settings& settings);
     /// Teleports a body, without collisions on the path. Works for static bodies too; bodies that touched them wake.
     Result<void> set_pose(BodyId body, const Pose& pose);
@@ -102,8 +103,8 @@ public:
     Result<void> include_pair(BodyId a, BodyId b);
 
     // Forces and impulses, for dynamic bodies; BadArgument for others. Forces and torques act during the next step of
-    // more than 0 s and
-    // are then cleared; impulses change the velocity immediately. Points are in world space.
+    // more than 0 s and are then cleared; impulses change the velocity immediately. Points are in world space.
+    // Quarantined bodies accept them, and do not move.
     Result<void> apply_force(BodyId body, Vec3 newtons);
     Result<void> apply_force_at(BodyId body, Vec3 newtons, Vec3d point);
     Result<void> apply_torque(BodyId body, Vec3 newton_metres);

@@ -33,7 +33,9 @@ public:
     [[nodiscard]] ContactManifold& operator[](std::uint32_t index) { return all_[index]; }
     [[nodiscard]] const ContactManifold& operator[](std::uint32_t index) const { return all_[index]; }
 
-    /// Makes room for `count` manifolds of a contact, 1 to max_per_contact, and keeps those it has. Amortised O(count).
+    /// Makes room for `count` manifolds of a contact, 1 to max_per_contact, and keeps those it has. New manifolds are
+    /// empty: their friction and restitution are 0 until update_materials() of world/detail/contacts.hpp sets them.
+    /// Amortised O(count).
     void reserve(Contact& c, std::size_t count) {
         if (count <= c.capacity) return;
         const int size_class = std::bit_width(count - 1);
