@@ -1,5 +1,6 @@
 """The check of the tour sees code that is not an example's, and output that is not a program's."""
 import importlib.util
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -36,6 +37,19 @@ class CheckTour(unittest.TestCase):
         self.assertEqual(len(found), 1)
         self.assertEqual(updated, "examples/02_a.cpp\n```text\nwent\nstayed\n```\nand\n")
         self.assertEqual(errors(updated), [])
+
+    def test_runs_commands_and_compares_their_output(self):
+        page = "```console\n$ go\nwent in … ms\n$ stay\n```\n"
+        run = {"go": "went in 3 ms\n", "stay": ""}
+        self.assertEqual(tour.check(page, None, None, run.get)[0], [])
+        self.assertEqual(tour.check(page, None, None)[0], [])
+        for output in [{"go": "went in 3 s\n"}, {"go": "went in 3 ms\nand back\n"}, {"stay": "no\nexit code 1\n"}]:
+            with self.subTest(output=output):
+                self.assertEqual(len(tour.check(page, None, None, (run | output).get)[0]), 1)
+
+    def test_tells_the_exit_code_of_a_command_that_fails(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(tour.output_of_command("echo a; exit 3", folder, folder), "a\nexit code 3\n")
 
 
 if __name__ == "__main__":
