@@ -2,10 +2,11 @@
 """Checks that the code and output in docs/tour.md are those of the examples.
 
 Usage: check_tour.py [--write] PROGRAMS [REPOSITORY]. PROGRAMS is the folder that holds example_NAME for each
-examples/NAME.cpp (build/<preset>/examples); the command `fase` is expected in the folder above it. Each block belongs to the example named last before it. A ```cpp block must be
-consecutive full lines of that example, with the same or less indentation; a ```text block must be its full output. A ```console
-block holds commands after "$ ", each with its output, in which … stands for any text; they run in one empty folder, in the order of the page. With --write
-the tool updates the output blocks instead of checking them; it never writes code or commands. Exit code 1 when something differs.
+examples/NAME.cpp (build/<preset>/examples); the command `fase` is expected in the folder above it. Each block belongs to the
+example named last before it. A ```cpp block must be consecutive full lines of that example, with the same or less indentation; a
+```text block must be its full output. A ```console block holds commands after "$ ", each with its output, in which … stands for any
+text; they run in one empty folder, in the order of the page. With --write the tool updates the ```text blocks instead of checking
+them; it never writes code or the output of commands. Exit code 1 when something differs.
 """
 import os
 import re

@@ -106,7 +106,8 @@ def two_phases():
 
 def planes():
     """A BSP tree of six walls: the plan on the left, the tree on the right."""
-    sketch = Sketch(400, "A BSP tree of six walls", "From above. Each plane lies on a face of a wall and divides what is left of the level.").view(30, 96, 25)
+    sketch = Sketch(400, "A BSP tree of six walls",
+                    "From above. Each plane lies on a face of a wall and divides what is left of the level.").view(30, 96, 25)
     walls = {"a": (0, 5, 8, 5.6), "b": (9.6, 5, 14, 5.6), "c": (4, 0, 4.6, 5), "d": (10, 0, 10.6, 5), "e": (3, 5.6, 3.6, 10), "f": (9, 5.6, 9.6, 10)}
     for name, (x0, z0, x1, z1) in walls.items():
         sketch.box(x0, z0, x1, z1, fill=STATIC, stroke=STATIC, opacity=0.5)
@@ -137,7 +138,8 @@ def planes():
 
 def leaves():
     """The first three lines that example_05_leaves prints, and how leaves store their boxes."""
-    sketch = Sketch(430, "The leaves of a quadtree", "Capacity 2, a root of 64 m; seen from above. Below: the arrays of the last tree, and (first, count) of each leaf.")
+    sketch = Sketch(430, "The leaves of a quadtree",
+                    "Capacity 2, a root of 64 m; seen from above. Below: the arrays of the last tree, and (first, count) of each leaf.")
     boxes = {"0": (10, 10), "1": (50, 12), "2": (20, 44), "3": (32, 12)}
     for left, count, title in ((20, 2, "two boxes: one leaf"), (285, 3, "a third: the root splits"), (550, 4, "one across the border")):
         sketch.view(left, 92, 3.4)
@@ -167,7 +169,8 @@ def leaves():
 
 
 def bounce():
-    sketch = Sketch(290, "An elastic collision of two ghosts of equal mass", "They exchange the parts of their velocities along the line between them.")
+    sketch = Sketch(290, "An elastic collision of two ghosts of equal mass",
+                    "They exchange the parts of their velocities along the line between them.")
     a, b, va, vb = (0, 0), (1.9, -0.6), (2.6, 0.2), (-0.9, 0.9)
     gap = math.hypot(b[0] - a[0], b[1] - a[1])
     n = (b[0] - a[0]) / gap, (b[1] - a[1]) / gap
@@ -187,7 +190,8 @@ def bounce():
 
 def players():
     """The paths of example_07_walls_and_players, by the same rule."""
-    sketch = Sketch(420, "Two indexes: walls and players", "From above; a square of the grid is 1 m wide. Walls are static, players move.").view(60, 70, 32)
+    sketch = Sketch(420, "Two indexes: walls and players",
+                    "From above; a square of the grid is 1 m wide. Walls are static, players move.").view(60, 70, 32)
     for i in range(11):
         sketch.path([(i, 0), (i, 10)], svg.GRID, width=1)
         sketch.path([(0, i), (10, i)], svg.GRID, width=1)
@@ -202,7 +206,8 @@ def players():
         for _ in range(180):
             position = [p + v / 60 for p, v in zip(position, velocity)]
             for x0, z0, x1, z1 in walls.values():
-                pushes = [(x1 - position[0] + 0.5, 0, 1), (position[0] + 0.5 - x0, 0, -1), (z1 - position[1] + 0.5, 1, 1), (position[1] + 0.5 - z0, 1, -1)]
+                pushes = [(x1 - position[0] + 0.5, 0, 1), (position[0] + 0.5 - x0, 0, -1),
+                          (z1 - position[1] + 0.5, 1, 1), (position[1] + 0.5 - z0, 1, -1)]
                 depth, axis, sign = min(pushes)
                 if depth < 0:
                     continue
@@ -291,7 +296,8 @@ def step():
 
 def queries():
     """The scene of example_13_world_queries, from the side."""
-    sketch = Sketch(370, "Queries of a world", "From the side; a crate is 1 m high. Distances are measured to the exact shapes.").view(90, 320, 46, up=True)
+    sketch = Sketch(370, "Queries of a world",
+                    "From the side; a crate is 1 m high. Distances are measured to the exact shapes.").view(90, 320, 46, up=True)
     sketch.path([(-1.2, 0), (13.4, 0)], STATIC, width=4)
     for i in range(5):
         sketch.box(9.5, i, 10.5, i + 1, fill=STATIC, stroke=STATIC, opacity=0.5)
@@ -313,7 +319,8 @@ def queries():
 
 def planks():
     """The planks of example_15_push_and_spin, five times in a second."""
-    sketch = Sketch(410, "The same push, in the middle and at the end", "From above: the planks after 0, 0.25, 0.5, 0.75 and 1 s; arrows: where they are pushed.")
+    sketch = Sketch(410, "The same push, in the middle and at the end",
+                    "From above: the planks after 0, 0.25, 0.5, 0.75 and 1 s; arrows: where they are pushed.")
     spin = 80 / (80 / 12 * (2**2 + 0.2**2))  # impulse times arm, divided by the moment of inertia
     for left, title, moves, spins in ((150, "push in the middle: moves", 1, 0), (400, "push at the end: moves and turns", 1, spin),
                                       (650, "torque: turns faster and faster", 0, -1)):

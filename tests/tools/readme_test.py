@@ -24,7 +24,8 @@ class Readme(unittest.TestCase):
     def test_a_dead_link_is_found_outside_of_code_only(self):
         with tempfile.TemporaryDirectory() as folder:
             page = Path(folder) / "page.md"
-            page.write_text("# A `part`, 1\n[a](page.md) [b](page.md#a-part-1) [c](gone.md#part) [d](https://x.org) [e](#2)\n```\n# 2\n[](lambda) {}\n```\n")
+            page.write_text("# A `part`, 1\n[a](page.md) [b](page.md#a-part-1) [c](gone.md#part) [d](https://x.org) [e](#2)\n"
+                            "```\n# 2\n[](lambda) {}\n```\n")
             self.assertEqual(check_links.dead_links(page), ["gone.md#part", "#2"])
 
 
