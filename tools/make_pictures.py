@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the pictures of docs/tour.md in docs/pictures/tour: sketches, and what the command `fase` draws.
+"""Makes the pictures of docs/tour.md (sketches, and what the command `fase` draws) and of docs/structures.
 
-Usage: make_tour_pictures.py [--program build/release/fase] [--check] [REPOSITORY]. --check writes nothing: exit code 1 when a sketch
+Usage: make_pictures.py [--program build/release/fase] [--check] [REPOSITORY]. --check writes nothing: exit code 1 when a sketch
 differs from its file, or when a picture that `fase` draws does not exist. The level of the tour is drawn by the command on its page.
 """
 import argparse
@@ -16,6 +16,7 @@ from pathlib import Path
 from tour_sketches import SKETCHES
 
 FOLDER = "docs/pictures/tour"
+PAGES = "docs/pictures/structures"  # a picture for each structure's page
 STRUCTURES = ["quadtree", "kd_tree", "dynamic_bvh", "row_grid"]
 DRAWN = ["cities.svg", "asleep.svg", "atlas.png", *(f"{name}.svg" for name in STRUCTURES)]
 COLOURS = [(0x00, 0x72, 0xb2), (0xd5, 0x5e, 0x00), (0x00, 0x9e, 0x73), (0xcc, 0x79, 0xa7), (0xe6, 0x9f, 0x00), (0x56, 0xb4, 0xe9)]
@@ -55,8 +56,8 @@ def write_sprites(folder):
         (folder / f"sprite{i:02}.png").write_bytes(png(width, height, COLOURS[i % len(COLOURS)], forms[i % len(forms)]))
 
 
-def draw(program, pictures):
-    """Writes the pictures that the command draws."""
+def draw(program, pictures, pages):
+    """Writes the pictures that the command draws: those of the tour, and those of the structures' pages."""
     def fase(*arguments):
         subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
@@ -69,6 +70,8 @@ def draw(program, pictures):
         fase("generate", "flat", "--count", 250, "--frames", 20, "-o", folder / "flat.aabt")
         for structure in STRUCTURES:
             fase("draw", folder / "flat.aabt", "--structure", structure, "--frame", 10, "-o", pictures / f"{structure}.svg")
+        fase("run", "domino", "--count", 800, "--steps", 301, "--trace", folder / "domino.aabt")
+        fase("draw", folder / "domino.aabt", "--structure", "all", "--frame", 300, "-o", f"{pages}/")
         write_sprites(folder / "sprites")
         fase("atlas", folder / "sprites", "-o", folder / "atlas", "--padding", 2, "--tries", 100)
         (pictures / "atlas.png").write_bytes((folder / "atlas.png").read_bytes())
@@ -93,12 +96,12 @@ def main():
     pictures = arguments.repository / FOLDER
     if arguments.check:
         wrong = differences(pictures)
-        print("\n".join(f"{FOLDER}/{name}: differs; run tools/make_tour_pictures.py" for name in wrong) or "the pictures of the tour are current")
+        print("\n".join(f"{FOLDER}/{name}: differs; run tools/make_pictures.py" for name in wrong) or "the pictures of the tour are current")
         return 1 if wrong else 0
     pictures.mkdir(parents=True, exist_ok=True)
     for name, sketch in SKETCHES.items():
         (pictures / f"{name}.svg").write_text(sketch(), encoding="utf-8")
-    draw(arguments.program, pictures)
+    draw(arguments.program, pictures, arguments.repository / PAGES)
     return 0
 
 

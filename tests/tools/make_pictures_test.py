@@ -7,19 +7,19 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-import make_tour_pictures  # noqa: E402
+import make_pictures  # noqa: E402
 import tour_sketches  # noqa: E402
 
-FOLDER = ROOT / make_tour_pictures.FOLDER
+FOLDER = ROOT / make_pictures.FOLDER
 
 
 class TourPictures(unittest.TestCase):
     def test_sketches_are_those_of_the_tool(self):
-        self.assertEqual(make_tour_pictures.differences(FOLDER), [])
+        self.assertEqual(make_pictures.differences(FOLDER), [])
 
     def test_a_missing_picture_is_found(self):
-        self.assertIn("leaves.svg", make_tour_pictures.differences(FOLDER / "nowhere"))
-        self.assertIn("atlas.png", make_tour_pictures.differences(FOLDER / "nowhere"))
+        self.assertIn("leaves.svg", make_pictures.differences(FOLDER / "nowhere"))
+        self.assertIn("atlas.png", make_pictures.differences(FOLDER / "nowhere"))
 
     def test_pictures_are_small_and_all_are_shown(self):
         tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")
