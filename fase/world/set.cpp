@@ -47,6 +47,7 @@ void update_motion_state(WorldState& state, std::uint32_t body) {
     const dynamics::BodyMotion& motion = state.bodies.motion[body];
     const bool moves = length_squared(motion.linear_velocity) > 0 || length_squared(motion.angular_velocity) > 0;
     const MotionState now = traits.kind == BodyKind::Static    ? MotionState::Static
+                            : traits.quarantined               ? MotionState::Asleep
                             : traits.kind == BodyKind::Dynamic ? MotionState::Awake
                             : moves                            ? MotionState::Awake
                                                                : MotionState::Asleep;

@@ -169,6 +169,21 @@ TEST_F(Refusals, a_force_that_makes_a_speed_infinite_quarantines_only_its_body) 
     EXPECT_EQ(state(world, box).pose.position, state(twin, twin.bodies()[1]).pose.position);
 }
 
+TEST_F(Refusals, a_quarantined_body_rests_whatever_kind_it_becomes) {
+    const MassProperties light{1e-6f, {}, Mat3::diagonal({1e-6f, 1e-6f, 1e-6f})};
+    const BodyId bad = add(world, {.position = {0, 3, 0}, .mass = light}, Sphere{});
+    ASSERT_TRUE(world.apply_force(bad, {1e20f, 0, 0}));
+    ASSERT_TRUE(world.step());
+    for (const BodyKind kind : {BodyKind::Static, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Dynamic}) {
+        ASSERT_TRUE(world.set_kind(bad, kind));
+        if (kind != BodyKind::Static) ASSERT_TRUE(world.set_velocity(bad, {1, 0, 0}, {}));
+        run(world, 0.5);
+        EXPECT_FALSE(state(world, bad).awake);
+        EXPECT_TRUE(state(world, bad).quarantined);
+        EXPECT_EQ(state(world, bad).pose.position, (Vec3d{0, 3, 0}));
+    }
+}
+
 TEST_F(Refusals, speeds_above_the_limit_are_clamped_and_counted) {
     ASSERT_TRUE(world.set_velocity(box, {1e6f, 1e6f, 0}, {0, 1e4f, 0}));
     const auto report = world.step();
