@@ -176,7 +176,9 @@ TEST_F(Refusals, a_quarantined_body_rests_whatever_kind_it_becomes) {
     ASSERT_TRUE(world.step());
     for (const BodyKind kind : {BodyKind::Static, BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Dynamic}) {
         ASSERT_TRUE(world.set_kind(bad, kind));
-        if (kind != BodyKind::Static) ASSERT_TRUE(world.set_velocity(bad, {1, 0, 0}, {}));
+        if (kind != BodyKind::Static) {
+            ASSERT_TRUE(world.set_velocity(bad, {1, 0, 0}, {}));
+        }
         run(world, 0.5);
         EXPECT_FALSE(state(world, bad).awake);
         EXPECT_TRUE(state(world, bad).quarantined);
