@@ -141,16 +141,6 @@ void summarise(Contender& contender) {
 
 }  // namespace
 
-std::vector<MotionState> motion_states_of(const record::TraceReader& trace) {
-    std::vector<MotionState> motion_states;
-    for (const std::uint8_t flag : trace.flags()) {
-        motion_states.push_back((flag & record::trace_static) != 0   ? MotionState::Static
-                                : (flag & record::trace_asleep) != 0 ? MotionState::Asleep
-                                                                     : MotionState::Awake);
-    }
-    return motion_states;
-}
-
 Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, const PairBenchOptions& options,
                                                        const PairBenchProgress& progress) {
     const Result<std::vector<const PairEngineInfo*>> named = engines_named(options.engine);
@@ -160,7 +150,7 @@ Result<std::vector<PairBenchRow>> measure_pair_engines(const std::string& file, 
     record::TraceReader& trace = *opened;
     const std::uint64_t total =
         options.frames == 0 ? trace.frames() : std::min<std::uint64_t>(options.frames, trace.frames());
-    const std::vector<MotionState> motion_states = motion_states_of(trace);
+    const std::vector<MotionState> motion_states = trace.motion_states();
     const auto count = [&](MotionState one) {
         return static_cast<std::size_t>(std::count(motion_states.begin(), motion_states.end(), one));
     };

@@ -38,9 +38,6 @@ struct PairBenchRow {
     bool correct = true;       ///< each frame had the pairs of the plain sweep (first frame) or of the first engine
 };
 
-/// Returns the motion state of each box from the flags of a trace.
-[[nodiscard]] std::vector<MotionState> motion_states_of(const record::TraceReader& trace);
-
 /// Called before each turn with frames done, frames in total, trace and engine. Returns false to stop.
 using PairBenchProgress =
     std::function<bool(std::uint64_t done, std::uint64_t total, std::string_view trace, std::string_view engine)>;

@@ -6,6 +6,8 @@
 #include <new>
 
 #include "cli/atlas.hpp"
+#include "cli/bench/bench.hpp"
+#include "cli/check.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/output.hpp"
@@ -19,27 +21,9 @@
 #include "cli/run.hpp"
 #include "cli/view/view.hpp"
 #include "fase/core/version.hpp"
-#ifdef HAS_FASE_BENCH
-#include "cli/bench/pairs.hpp"
-#include "cli/bench/queries.hpp"
-#include "cli/bench/step.hpp"
-#include "cli/bench/sudden.hpp"
-#include "cli/check.hpp"
-#endif
 
 namespace fase::cli {
 namespace {
-
-#ifdef HAS_FASE_BENCH
-void add_bench(Command& program, CommandRegistry& registry) {
-    Command group = program.add_command("bench", "Run benchmarks of Fase and of other engines");
-    group.require_command();
-    add_bench_step(group, registry);
-    add_bench_pairs(group, registry);
-    add_bench_queries(group, registry);
-    add_bench_sudden(group, registry);
-}
-#endif
 
 int run_program(int count, char** arguments) {
     CommandRegistry registry;
@@ -65,10 +49,8 @@ int run_program(int count, char** arguments) {
     add_query(program, registry);
     add_atlas(program, registry);
     add_level(program, registry);
-#ifdef HAS_FASE_BENCH
     add_bench(program, registry);
     add_check(program, registry);
-#endif
     if (const std::optional<int> code = line.parse(count, arguments)) return *code;
     return registry.run();
 }

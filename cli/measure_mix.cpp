@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "bench/pairs.hpp"
 #include "cli/common/clock.hpp"
 #include "cli/common/output.hpp"
 #include "cli/query_set.hpp"
@@ -190,7 +189,7 @@ Result<MixFigures> measure_mix(record::TraceReader& trace, const TraceSurvey& su
     trace.rewind();
     if (const Result<bool> read = trace.next(boxes); !read) return read.error();
     const auto start = Clock::now();
-    MixedSets sets(choice.empty, boxes, bench::motion_states_of(trace));
+    MixedSets sets(choice.empty, boxes, trace.motion_states());
     figures.build_ms = ms_since(start);
     MixFigures warm_up;
     MixRun(mix, tasks, warm_up).run(sets, boxes, 0);

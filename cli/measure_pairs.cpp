@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/pairs.hpp"
+#include "bench/timing.hpp"
 #include "cli/common/clock.hpp"
 #include "fase/broad/brute_force.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
@@ -154,7 +154,7 @@ void add_choice(const pairs::PairFinder& finder, std::span<const MotionState> mo
 Result<TraceSurvey> survey(record::TraceReader& trace, std::uint64_t frames, bool check, const ReportProgress& report) {
     TraceSurvey seen;
     seen.frames = frames == 0 ? trace.frames() : std::min<std::uint64_t>(frames, trace.frames());
-    const std::vector<MotionState> motion_states = bench::motion_states_of(trace);
+    const std::vector<MotionState> motion_states = trace.motion_states();
     const auto count = [&](MotionState one) {
         return static_cast<std::uint64_t>(std::count(motion_states.begin(), motion_states.end(), one));
     };
@@ -202,7 +202,7 @@ Result<PairFigures> measure_pairs(record::TraceReader& trace, const TraceSurvey&
     const auto start = Clock::now();
     const bool automatic = choice.requested == "auto";
     Player player(choice, changes, tasks);
-    const std::vector<MotionState> motion_states = bench::motion_states_of(trace);
+    const std::vector<MotionState> motion_states = trace.motion_states();
     const auto build_begin = Clock::now();
     player.build(boxes, motion_states);
     figures.build_ms = ms_since(build_begin);

@@ -52,6 +52,7 @@ RULES = """
 To measure on your machine and renew this page:
 
 ```sh
+cmake --preset release -D FASE_BUILD_BENCH=ON -D FASE_BUILD_PEERS=ON && cmake --build build/release
 build/release/fase bench step --csv bench/results/step.csv
 tools/make_tables.py                                 # this page, its charts and the tables
 ```

@@ -76,6 +76,10 @@ Command Command::add_command(const std::string& name, const std::string& help) {
     return Command(app_->add_subcommand(name, help));
 }
 void Command::require_command() { app_->require_subcommand(1); }
+void Command::take_all_arguments() {
+    app_->prefix_command();
+    app_->set_help_flag();
+}
 void Command::set_footer(const std::string& text) { app_->footer(text); }
 void Command::on_parsed(std::function<void()> action) { app_->callback(std::move(action)); }
 

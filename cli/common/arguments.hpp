@@ -42,6 +42,8 @@ public:
     Command add_command(const std::string& name, const std::string& help);
     /// Refuses a command line that names no command below this one.
     void require_command();
+    /// Accepts, and ignores, whatever follows this command, `--help` included.
+    void take_all_arguments();
     /// Sets the text at the end of the help.
     void set_footer(const std::string& text);
     /// Calls `action` once the command line is parsed, if it names this command.

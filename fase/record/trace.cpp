@@ -159,6 +159,17 @@ Result<bool> TraceReader::next(std::vector<Aabb>& out) {
     return true;
 }
 
+std::vector<MotionState> TraceReader::motion_states() const {
+    std::vector<MotionState> states;
+    states.reserve(flags_.size());
+    for (const std::uint8_t flag : flags_) {
+        states.push_back((flag & trace_static) != 0   ? MotionState::Static
+                         : (flag & trace_asleep) != 0 ? MotionState::Asleep
+                                                      : MotionState::Awake);
+    }
+    return states;
+}
+
 Result<TraceWriter> TraceWriter::create(const std::string& name, std::size_t boxes) {
     if (boxes == 0 || boxes >= std::numeric_limits<std::uint32_t>::max())
         return Error{Status::BadArgument, name, fmt::format("found {} boxes; expected 1 to 2^32 - 2", boxes), {}};

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fase/core/motion_state.hpp"
 #include "fase/core/result.hpp"
 #include "fase/geometry/aabb.hpp"
 #include "fase/record/recording/bytes.hpp"
@@ -41,6 +42,8 @@ public:
 
     /// Returns the TraceFlag bits of each body.
     [[nodiscard]] std::span<const std::uint8_t> flags() const { return flags_; }
+    /// Returns the motion state of each body that its flags give.
+    [[nodiscard]] std::vector<MotionState> motion_states() const;
     [[nodiscard]] std::size_t boxes() const { return flags_.size(); }
     [[nodiscard]] std::uint32_t frames() const { return frames_; }
     /// Returns the size of the file.

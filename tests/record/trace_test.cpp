@@ -113,6 +113,16 @@ TEST(Trace, ReadsBackAsWritten) {
     }
 }
 
+TEST(Trace, FlagsGiveTheMotionStates) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write(folder / "t.aabt", Frames{std::vector<Aabb>(4, {{0, 0, 0}, {1, 1, 1}})},
+                      {0, trace_asleep, trace_static, 3}));
+    const Result<TraceReader> reader = TraceReader::open(folder / "t.aabt");
+    ASSERT_TRUE(reader) << reader.error().text();
+    EXPECT_EQ(reader->motion_states(),
+              (std::vector{MotionState::Awake, MotionState::Asleep, MotionState::Static, MotionState::Static}));
+}
+
 TEST(Trace, RewindRestartsAtTheFirstFrame) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write(folder / "t.aabt", artificial_frames(9, 2), flags_for(9)));
