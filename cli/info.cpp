@@ -96,7 +96,7 @@ Result<Facts> recording_facts(const InfoOptions& options) {
     return facts;
 }
 
-std::string text_of(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+std::string coordinates(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 /// Reads, and so validates, the whole trace.
 Result<Facts> trace_facts(const InfoOptions& options) {
@@ -153,8 +153,8 @@ Result<Facts> trace_facts(const InfoOptions& options) {
     }
     if (infinite == 0) facts.add("largest_size", largest);
     if (!is_empty(bounds)) {
-        facts.add("room_least", std::string_view(text_of(bounds.lo)));
-        facts.add("room_largest", std::string_view(text_of(bounds.hi)));
+        facts.add("room_least", std::string_view(coordinates(bounds.lo)));
+        facts.add("room_largest", std::string_view(coordinates(bounds.hi)));
     }
     facts.add("bytes", trace->bytes());
     facts.add("warnings", std::vector<std::string>{});
@@ -193,8 +193,8 @@ Result<Facts> mesh_facts(const InfoOptions& options) {
     facts.add("vertices", mesh->positions.size());
     facts.add("triangles", mesh->indices.size() / 3);
     if (!is_empty(bounds)) {
-        facts.add("room_least", std::string_view(text_of(bounds.lo)));
-        facts.add("room_largest", std::string_view(text_of(bounds.hi)));
+        facts.add("room_least", std::string_view(coordinates(bounds.lo)));
+        facts.add("room_largest", std::string_view(coordinates(bounds.hi)));
     }
     facts.add("warnings", std::vector<std::string>{});
     return facts;

@@ -40,10 +40,11 @@ function(fase_precompile target header)
   endif()
 endfunction()
 
-# Uses the precompiled header of `other`, a target that is compiled with the same flags.
+# Uses the precompiled header of `other`, a part of the library, whose code is position independent.
 function(fase_reuse_precompiled target other)
   if(FASE_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM ${other})
+    target_compile_options(${target} PRIVATE -fPIC)  # an executable would have -fPIE, for which g++ needs another one
   endif()
 endfunction()
 

@@ -29,47 +29,20 @@ public:
 
     explicit MotionKeys(double tolerance) : tolerance_(tolerance) {}
     /// Adds a sample. Times must be strictly ascending.
-    void add(double time, Value value) {
-        if (keys_.empty()) {
-            keys_.push_back({time, value});
-            return;
-        }
-        const bool rests = value == keys_.back().value;
-        if (rests && pending_.size() == 1 && pending_[0].value == value) {
-            pending_[0].time = time;  // still at rest: only the last such time matters
-            return;
-        }
-        if (!pending_.empty() && (pending_.size() >= max_pending || misses(time, value))) {
-            keys_.push_back(pending_.back());
-            pending_.clear();
-        }
-        pending_.push_back({time, value});
-    }
+    void add(double time, Value value);
     /// Returns the keys; the last sample is the last key. Nothing can be added afterwards. A motion that always rests
     /// has one key.
-    const std::vector<MotionKey<Value>>& finish() {
-        if (!pending_.empty() && !(keys_.size() == 1 && rests())) keys_.push_back(pending_.back());
-        pending_.clear();
-        return keys_;
-    }
+    const std::vector<MotionKey<Value>>& finish();
 
 private:
-    [[nodiscard]] bool misses(double time, Value value) const {
-        const MotionKey<Value>& from = keys_.back();
-        for (const MotionKey<Value>& sample : pending_) {
-            const double fraction = (sample.time - from.time) / (time - from.time);
-            if (distance_between(from.value, value, fraction, sample.value) > tolerance_) return true;
-        }
-        return false;
-    }
-    [[nodiscard]] bool rests() const {
-        for (const MotionKey<Value>& sample : pending_) {
-            if (!(sample.value == keys_.back().value)) return false;
-        }
-        return true;
-    }
+    [[nodiscard]] bool misses(double time, Value value) const;
+    [[nodiscard]] bool rests() const;
+
     double tolerance_;
     std::vector<MotionKey<Value>> keys_, pending_;
 };
+
+extern template class MotionKeys<Vec3d>;
+extern template class MotionKeys<Quatd>;
 
 }  // namespace fase::record
