@@ -12,7 +12,7 @@
 namespace fase::level {
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using LumpBytes = std::vector<std::byte>;
 
 std::int16_t to_i16(double value) {
     return static_cast<std::int16_t>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
@@ -39,7 +39,7 @@ public:
         if (auto fits = check_limit("vertices", kept_ + cuts_, 65536); !fits) return fits;
         if (auto fits = check_limit("segs", walls_.size(), 65535); !fits) return fits;
         if (auto fits = check_limit("sub-sectors", bsp_.sub_sectors.size(), 32768); !fits) return fits;
-        Bytes vertices, segs, subs;
+        LumpBytes vertices, segs, subs;
         append_vertices(vertices);
         for (std::uint32_t v = 0; v < cuts_; ++v) {
             append_i16(vertices, to_i16(cut(v).x));
@@ -58,9 +58,9 @@ public:
     }
 
     Result<void> extended(std::vector<Lump>& out, bool gl) const {
-        Bytes vertices, sub_sectors;
+        LumpBytes vertices, sub_sectors;
         append_vertices(vertices);
-        Bytes normal = header("XNOD");
+        LumpBytes normal = header("XNOD");
         append_u32(normal, static_cast<std::uint32_t>(bsp_.sub_sectors.size()));
         for (std::size_t s = 0; s < bsp_.sub_sectors.size(); ++s)
             append_u32(normal, static_cast<std::uint32_t>(first_wall_[s + 1] - first_wall_[s]));
@@ -84,7 +84,7 @@ public:
     [[nodiscard]] std::vector<Lump> gl() const {
         const std::size_t edges = edges_before(bsp_.sub_sectors.size());
         const bool wide = kept_ > 32768 || cuts_ > 32768 || edges > 65534 || bsp_.sub_sectors.size() > 32768;
-        Bytes vertices, segs, subs;
+        LumpBytes vertices, segs, subs;
         append_text(vertices, wide ? "gNd5" : "gNd2");
         for (std::uint32_t v = 0; v < cuts_; ++v) {
             append_u32(vertices, to_fixed(cut(v).x));
@@ -163,16 +163,16 @@ private:
     [[nodiscard]] std::uint32_t vertex_index(std::uint32_t v) const {
         return v < bsp_.map_vertices ? v : static_cast<std::uint32_t>(v - bsp_.map_vertices + kept_);
     }
-    void append_vertices(Bytes& out) const {
+    void append_vertices(LumpBytes& out) const {
         for (std::uint32_t v = 0; v < kept_; ++v) {
             append_i16(out, map_.vertices[v].x);
             append_i16(out, map_.vertices[v].y);
         }
     }
-    static void append_text(Bytes& out, std::string_view text) {
+    static void append_text(LumpBytes& out, std::string_view text) {
         for (const char c : text) out.push_back(static_cast<std::byte>(c));
     }
-    void append_classic_seg(Bytes& out, const Seg& seg) const {
+    void append_classic_seg(LumpBytes& out, const Seg& seg) const {
         const Line& line = map_.lines[seg.line];
         const Vertex a = map_.vertices[line.from], b = map_.vertices[line.to];
         const double sign = seg.left ? -1 : 1;
@@ -184,8 +184,8 @@ private:
         append_u16(out, static_cast<std::uint16_t>(std::llround(seg.offset)));
     }
 
-    Bytes header(std::string_view magic) const {
-        Bytes out;
+    LumpBytes header(std::string_view magic) const {
+        LumpBytes out;
         append_text(out, magic);
         append_u32(out, kept_);
         append_u32(out, cuts_);
@@ -195,8 +195,8 @@ private:
         }
         return out;
     }
-    [[nodiscard]] Bytes extended_gl() const {
-        Bytes out = header("XGLN");
+    [[nodiscard]] LumpBytes extended_gl() const {
+        LumpBytes out = header("XGLN");
         append_u32(out, static_cast<std::uint32_t>(bsp_.sub_sectors.size()));
         for (const SubSector& s : bsp_.sub_sectors) append_u32(out, s.edges);
         append_u32(out, static_cast<std::uint32_t>(edges_before(bsp_.sub_sectors.size())));
@@ -228,7 +228,7 @@ private:
     }
 
     /// Shortens directions that do not fit 16 bits, by a common divisor if there is one.
-    static void append_line(Bytes& out, const Node& node) {
+    static void append_line(LumpBytes& out, const Node& node) {
         std::int32_t dx = node.dx, dy = node.dy;
         const auto too_long = [&] { return std::max(std::abs(dx), std::abs(dy)) > 32767; };
         if (const std::int32_t common = std::gcd(dx, dy); too_long() && common > 1) {
@@ -245,8 +245,8 @@ private:
                  {std::ceil(box.hi.y), std::floor(box.lo.y), std::floor(box.lo.x), std::ceil(box.hi.x)})
                 append_i16(out, to_i16(value));
     }
-    [[nodiscard]] Bytes nodes(bool wide) const {
-        Bytes out;
+    [[nodiscard]] LumpBytes nodes(bool wide) const {
+        LumpBytes out;
         for (const Node& node : bsp_.nodes) {
             append_line(out, node);
             for (const std::uint32_t child : node.children) {
@@ -260,9 +260,9 @@ private:
         }
         return out;
     }
-    void append_nodes(Bytes& out) const {
+    void append_nodes(LumpBytes& out) const {
         append_u32(out, static_cast<std::uint32_t>(bsp_.nodes.size()));
-        const Bytes all = nodes(true);
+        const LumpBytes all = nodes(true);
         out.insert(out.end(), all.begin(), all.end());
     }
 };
@@ -295,7 +295,7 @@ Result<void> write_bsp(Wad& wad, std::size_t marker, const std::string& file, co
     const std::size_t reject_bytes = (map.sectors.size() * map.sectors.size() + 7) / 8;
     const auto reject = wad.find_in_map(marker, "REJECT");
     if (!reject || wad.lumps[*reject].bytes.size() < reject_bytes)
-        wad.set_in_map(marker, "REJECT", Bytes(reject_bytes, std::byte{0}));
+        wad.set_in_map(marker, "REJECT", LumpBytes(reject_bytes, std::byte{0}));
     const auto blockmap = wad.find_in_map(marker, "BLOCKMAP");
     if (!blockmap || wad.lumps[*blockmap].bytes.empty()) wad.set_in_map(marker, "BLOCKMAP", make_blockmap(map));
     sort_map_lumps(wad, marker);
