@@ -68,9 +68,9 @@ struct BodyState {
     BodyKind kind = BodyKind::Dynamic;
     bool awake = true;  ///< always false for static bodies
     /// A step made a number infinite or NaN, or moved the body out of the world (1e7 m): it is at its last valid pose,
-    /// asleep whatever its kind, and has no contacts. This is final. Calls that change it succeed and store what they set, but no step
-    /// moves it: queries find it where set_pose() put it, its state shows velocities and impulses, wake() has no
-    /// effect. To use the object again, remove the body and add a new one.
+    /// asleep whatever its kind, and has no contacts. This is final. Calls that change it succeed and store what they
+    /// set, but no step moves it: queries find it where set_pose() put it, its state shows velocities and impulses,
+    /// wake() has no effect. To use the object again, remove the body and add a new one.
     bool quarantined = false;
     Pose pose;             ///< of the body's frame
     Vec3d centre;          ///< of mass, world
