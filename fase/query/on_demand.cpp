@@ -1,8 +1,6 @@
 /// Structures that are built and updated by their first use after a commit.
 #include "fase/query/on_demand.hpp"
 
-#include <algorithm>
-
 #include "fase/broad/find_pairs.hpp"
 
 namespace fase::query {
@@ -16,41 +14,30 @@ TaskRunner& serial_tasks() {
 }
 
 template <class S> void LazyStructure<S>::commit(std::span<const Proxy> changed, std::size_t proxies) {
-    idle_ = used_.exchange(false) ? 0 : idle_ + 1;
-    if (!built_) return;
-    if (idle_ >= commits_until_freed) return clear();
-    if (changed.empty()) return;
-    if (flags_.size() < proxies) flags_.resize(proxies + proxies / 2, 0);
-    pending_.reserve(std::min(pending_.size() + changed.size(), flags_.size()));
-    for (const Proxy p : changed) {
-        if (flags_[p] & is_pending) continue;
-        flags_[p] |= is_pending;
-        pending_.push_back(p);
-    }
-    current_.store(false, std::memory_order_relaxed);
+    if (!changes_.commit(built_, changed, proxies)) return clear();
+    if (!changed.empty()) current_.store(false, std::memory_order_relaxed);
 }
 
 template <class S> void LazyStructure<S>::clear() {
     structure_ = S();
-    pending_ = {};
+    changes_.clear();
     moved_ = {};
-    flags_ = {};
+    is_stored_ = {};
     built_ = false;
     current_ = false;
-    idle_ = 0;
 }
 
 template <class S> std::size_t LazyStructure<S>::bytes() const {
-    return structure_.bytes() + (pending_.capacity() + moved_.capacity()) * sizeof(Proxy) + flags_.capacity();
+    return structure_.bytes() + changes_.bytes() + moved_.capacity() * sizeof(Proxy) + is_stored_.capacity();
 }
 
 template <class S> void LazyStructure<S>::build(const IndexedBoxes& in) {
-    flags_.assign(in.states.size(), 0);
+    is_stored_.assign(in.states.size(), 0);
     std::vector<Move> all;
     for (Proxy p = 0; p < in.states.size(); ++p) {
         if (!(in.states[p] & holds_value)) continue;
         all.push_back({p, in.boxes[p]});
-        flags_[p] = is_stored;
+        is_stored_[p] = 1;
     }
     structure_.build(all);
     bool any_rests = false;
@@ -63,13 +50,14 @@ template <class S> void LazyStructure<S>::build(const IndexedBoxes& in) {
 }
 
 template <class S> void LazyStructure<S>::follow(const IndexedBoxes& in, TaskRunner* tasks) {
-    if (flags_.size() < in.states.size()) flags_.resize(in.states.size(), 0);
+    const std::span<const Proxy> changed = changes_.proxies();
+    if (is_stored_.size() < in.states.size()) is_stored_.resize(in.states.size(), 0);
     moved_.clear();
-    moved_.reserve(pending_.size());
+    moved_.reserve(changed.size());
     const std::span<const Aabb> boxes = in.boxes;
-    for (const Proxy p : pending_) {
-        const bool stored = flags_[p] & is_stored, exists = in.states[p] & holds_value;
-        flags_[p] = exists ? is_stored : 0;
+    for (const Proxy p : changed) {
+        const bool stored = is_stored_[p] != 0, exists = (in.states[p] & holds_value) != 0;
+        is_stored_[p] = exists ? 1 : 0;
         if (!exists) {
             if (stored) structure_.erase(p);
             continue;
@@ -85,9 +73,9 @@ template <class S> void LazyStructure<S>::follow(const IndexedBoxes& in, TaskRun
     } else {
         for (const Proxy p : moved_) structure_.move(p, boxes[p]);
     }
-    for (const Proxy p : pending_) {
+    for (const Proxy p : changed) {
         const bool awake = in.states[p] & is_awake;
-        if (flags_[p] & is_stored && structure_.is_awake(p) != awake) structure_.set_awake(p, awake);
+        if (is_stored_[p] && structure_.is_awake(p) != awake) structure_.set_awake(p, awake);
     }
     if constexpr (broad::CommitsInParallel<S>) {
         if (tasks != nullptr) return structure_.commit(*tasks);
@@ -106,12 +94,12 @@ template <class S> void LazyStructure<S>::update(const IndexedBoxes& in, TaskRun
         clear();
         throw;
     }
-    pending_.clear();
+    changes_.forget();
     built_ = true;
 }
 
 template <class S> const S& LazyStructure<S>::current(const IndexedBoxes& in, TaskRunner* tasks) {
-    if (!used_.load(std::memory_order_relaxed)) used_.store(true, std::memory_order_relaxed);
+    changes_.use();
     if (current_.load(std::memory_order_acquire)) return structure_;
     const std::lock_guard guard(lock_);
     if (current_.load(std::memory_order_relaxed)) return structure_;

@@ -11,6 +11,7 @@
 #include "fase/broad/row_grid.hpp"
 #include "fase/broad/wide_bvh.hpp"
 #include "fase/core/tasks.hpp"
+#include "fase/query/detail/pending_changes.hpp"
 
 namespace fase::query {
 
@@ -35,7 +36,7 @@ struct IndexedBoxes {
 /// It is freed after 60 commits without a use.
 template <class S> class LazyStructure {
 public:
-    /// Notes that boxes changed. Allocates before it changes anything.
+    /// Notes that boxes changed. When an allocation fails, changes nothing.
     void commit(std::span<const broad::Proxy> changed, std::size_t proxies);
     /// Returns the structure with all changes. Thread-safe between two commits. May throw std::bad_alloc; the next call
     /// works.
@@ -50,16 +51,13 @@ private:
     void build(const IndexedBoxes& in);
     void follow(const IndexedBoxes& in, TaskRunner* tasks);
 
-    static constexpr std::uint8_t is_pending = 1, is_stored = 2;
-    static constexpr std::uint32_t commits_until_freed = 60;
-
     S structure_;
-    std::vector<broad::Proxy> pending_, moved_;  // changed since the last update; scratch
-    std::vector<std::uint8_t> flags_;            // by proxy
+    PendingChanges changes_;
+    std::vector<broad::Proxy> moved_;      // scratch
+    std::vector<std::uint8_t> is_stored_;  // by proxy: is in the structure
     std::mutex lock_;
-    std::atomic<bool> current_ = false, used_ = false;
+    std::atomic<bool> current_ = false;
     bool built_ = false;
-    std::uint32_t idle_ = 0;  // commits since the last use
 };
 
 extern template class LazyStructure<broad::RowGrid>;

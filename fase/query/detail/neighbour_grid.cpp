@@ -14,7 +14,6 @@ using broad::Proxy;
 
 namespace {
 
-constexpr std::uint32_t commits_until_freed = 60;
 constexpr std::size_t sample = 256;  // pairs whose numbers are looked at
 constexpr double mixed_factor = 8;   // numbers are given anew when pairs lie so much farther apart
 constexpr std::size_t pairs_per_task = 8192;
@@ -22,17 +21,7 @@ constexpr std::size_t pairs_per_task = 8192;
 }  // namespace
 
 void NeighbourGrid::commit(std::span<const Proxy> changed, std::size_t proxies) {
-    idle_ = used_ ? 0 : idle_ + 1;
-    used_ = false;
-    if (!built_) return;
-    if (idle_ >= commits_until_freed) return clear();
-    if (is_pending_.size() < proxies) is_pending_.resize(proxies + proxies / 2, 0);
-    pending_.reserve(std::min(pending_.size() + changed.size(), is_pending_.size()));
-    for (const Proxy p : changed) {
-        if (is_pending_[p]) continue;
-        is_pending_[p] = 1;
-        pending_.push_back(p);
-    }
+    if (!changes_.commit(built_, changed, proxies)) clear();
 }
 
 void NeighbourGrid::clear() { *this = NeighbourGrid(); }
@@ -40,7 +29,7 @@ void NeighbourGrid::clear() { *this = NeighbourGrid(); }
 std::size_t NeighbourGrid::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof list[0]; };
     return sizeof *this + grid_.bytes() + of(number_of_) + of(proxy_of_) + of(boxes_) + of(grown_) + of(free_) +
-           of(pending_) + of(moved_) + of(is_pending_);
+           of(moved_) + changes_.bytes();
 }
 
 void NeighbourGrid::set_box(Number number, const Aabb& box) {
@@ -73,8 +62,7 @@ void NeighbourGrid::build(const IndexedBoxes& in) {
 /// Stores all boxes in the grid, numbered by their place in proxy_of_.
 void NeighbourGrid::number_by_rows(const IndexedBoxes& in) {
     number_of_.assign(in.states.size(), no_index);
-    is_pending_.assign(in.states.size(), 0);
-    pending_.clear();
+    changes_.forget();
     free_.clear();
     boxes_.resize(proxy_of_.size());
     grown_.resize(proxy_of_.size());
@@ -89,11 +77,11 @@ void NeighbourGrid::number_by_rows(const IndexedBoxes& in) {
 
 /// Adds and removes boxes.
 void NeighbourGrid::insert_and_erase(const IndexedBoxes& in) {
-    for (const Proxy p : pending_) {
+    for (const Proxy p : changes_.proxies()) {
         Number& number = number_of_[p];
         const bool exists = (in.states[p] & holds_value) != 0;
         if (exists == (number != no_index)) continue;
-        is_pending_[p] = 0;
+        changes_.settle(p);
         if (!exists) {
             grid_.erase(number);
             free_.push_back(number);
@@ -120,26 +108,25 @@ void NeighbourGrid::insert_and_erase(const IndexedBoxes& in) {
 void NeighbourGrid::follow(const IndexedBoxes& in, TaskRunner* tasks) {
     number_of_.resize(in.states.size(), no_index);
     moved_.clear();
-    moved_.reserve(pending_.size());
+    moved_.reserve(changes_.proxies().size());
     insert_and_erase(in);
     const auto move = [&](Number number, Proxy p) {
         set_box(number, in.boxes[p]);
         moved_.push_back(number);
     };
-    if (2 * pending_.size() > proxy_of_.size()) {  // in the order of the grid, which its memory is in
+    if (2 * changes_.proxies().size() > proxy_of_.size()) {  // in the order of the grid, which its memory is in
         constexpr std::size_t ahead = 16;
         for (Number number = 0; number < proxy_of_.size(); ++number) {
             if (number + ahead < proxy_of_.size() && proxy_of_[number + ahead] != no_index)
                 detail::prefetch(in.boxes[proxy_of_[number + ahead]]);
             const Proxy p = proxy_of_[number];
-            if (p != no_index && is_pending_[p]) move(number, p);
+            if (p != no_index && changes_.is_pending(p)) move(number, p);
         }
     } else {
-        for (const Proxy p : pending_)
-            if (is_pending_[p] && number_of_[p] != no_index) move(number_of_[p], p);
+        for (const Proxy p : changes_.proxies())
+            if (changes_.is_pending(p) && number_of_[p] != no_index) move(number_of_[p], p);
     }
-    for (const Proxy p : pending_) is_pending_[p] = 0;
-    pending_.clear();
+    changes_.forget();
     grid_.move(tasks, std::span<const Number>(moved_), std::span<const Aabb>(grown_));
     tasks != nullptr ? grid_.commit(*tasks) : grid_.commit();
 }
@@ -150,7 +137,7 @@ void NeighbourGrid::update(const IndexedBoxes& in, float radius, TaskRunner* tas
     try {
         if (!built_ || other_radius || mixed_ || 4 * inserted_ > proxy_of_.size()) {
             build(in);
-        } else if (!pending_.empty()) {
+        } else if (!changes_.proxies().empty()) {
             follow(in, tasks);
         }
     } catch (...) {
@@ -205,7 +192,7 @@ void NeighbourGrid::watch_locality(std::span<const Pair> pairs) {
 }
 
 void NeighbourGrid::find(const IndexedBoxes& in, float radius, TaskRunner* tasks, std::vector<Pair>& out) {
-    used_ = true;
+    changes_.use();
     out.clear();
     update(in, radius, tasks);
     tasks != nullptr ? grid_.find_pairs(*tasks, out) : grid_.find_pairs(out);

@@ -6,6 +6,7 @@
 
 #include "fase/broad/row_grid.hpp"
 #include "fase/core/tasks.hpp"
+#include "fase/query/detail/pending_changes.hpp"
 #include "fase/query/on_demand.hpp"
 
 namespace fase::query {
@@ -35,7 +36,7 @@ struct alignas(16) PaddedBox {
 /// were inserted, or when motion has mixed them.
 class NeighbourGrid {
 public:
-    /// Notes that boxes changed. Allocates before it changes anything.
+    /// Notes that boxes changed. When an allocation fails, changes nothing.
     void commit(std::span<const broad::Proxy> changed, std::size_t proxies);
     /// Replaces `out` by the pairs of boxes at most `radius` metres apart, in float, each once, smaller proxy first.
     /// May throw std::bad_alloc; the next call works. The pairs and their order do not depend on the number of threads.
@@ -61,14 +62,12 @@ private:
     std::vector<PaddedBox> boxes_;        // by number
     std::vector<Aabb> grown_;             // by number
     std::vector<Number> free_;
-    std::vector<broad::Proxy> pending_;
     std::vector<Number> moved_;
-    std::vector<std::uint8_t> is_pending_;  // by proxy
+    PendingChanges changes_;
     float radius_ = 0;
     double spread_ = 0;  // mean distance of the numbers of a pair when they were given; 0: not known yet
     std::size_t inserted_ = 0;
-    bool built_ = false, mixed_ = false, used_ = false;
-    std::uint32_t idle_ = 0;
+    bool built_ = false, mixed_ = false;
 };
 
 }  // namespace fase::query
