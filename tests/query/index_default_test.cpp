@@ -20,9 +20,6 @@ Aabb random_box(Random& random, float reach) {
     const Vec3 size{random.between(0, 2), random.below(4) == 0 ? 0 : random.between(0, 3), random.between(0, 1)};
     return {at, at + size};
 }
-float distance_squared(const Aabb& a, const Aabb& b) {
-    return query::squared_distance(query::PaddedBox(a), query::PaddedBox(b));
-}
 
 /// An index and what it must hold.
 struct Life {
@@ -64,7 +61,7 @@ struct Life {
         Pairs pairs;
         for (const auto& [a, box_a] : boxes)
             for (const auto& [b, box_b] : boxes)
-                if (a < b && distance_squared(box_a, box_b) <= radius * radius) pairs.emplace(a, b);
+                if (a < b && query::squared_distance(box_a, box_b) <= radius * radius) pairs.emplace(a, b);
         return pairs;
     }
 };

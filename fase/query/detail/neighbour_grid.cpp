@@ -37,7 +37,7 @@ void NeighbourGrid::set_box(Number number, const Aabb& box) {
     constexpr float slack = 4e-7f;
     const float half = 0.5f * radius_ * (1 + slack);
     const auto growth = [=](Vec3 v) { return abs(v) * slack + Vec3{half, half, half}; };
-    boxes_[number] = PaddedBox(box);
+    boxes_[number] = box;
     grown_[number] = {box.lo - growth(box.lo), box.hi + growth(box.hi)};
 }
 
@@ -45,7 +45,7 @@ void NeighbourGrid::build(const IndexedBoxes& in) {
     proxy_of_.clear();
     for (Proxy p = 0; p < in.states.size(); ++p)
         if (in.states[p] & holds_value) proxy_of_.push_back(p);
-    number_by_rows(in);
+    store_all(in);
     std::vector<Proxy> in_rows;
     in_rows.reserve(proxy_of_.size());
     grid_.traverse(broad::Everything{}, [&](Number number, const Aabb&) {
@@ -53,14 +53,14 @@ void NeighbourGrid::build(const IndexedBoxes& in) {
         return true;
     });
     proxy_of_.swap(in_rows);
-    number_by_rows(in);
+    store_all(in);
     mixed_ = false;
     inserted_ = 0;
     spread_ = 0;
 }
 
 /// Stores all boxes in the grid, numbered by their place in proxy_of_.
-void NeighbourGrid::number_by_rows(const IndexedBoxes& in) {
+void NeighbourGrid::store_all(const IndexedBoxes& in) {
     number_of_.assign(in.states.size(), no_index);
     changes_.forget();
     free_.clear();

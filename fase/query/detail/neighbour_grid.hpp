@@ -11,23 +11,16 @@
 
 namespace fase::query {
 
-/// A box in two rows of four floats, which compilers turn into vectors.
-struct alignas(16) PaddedBox {
-    float lo[4] = {}, hi[4] = {};
-
-    PaddedBox() = default;
-    explicit PaddedBox(const Aabb& box) : lo{box.lo.x, box.lo.y, box.lo.z, 0}, hi{box.hi.x, box.hi.y, box.hi.z, 0} {}
-};
 /// Returns the square of the distance between two boxes, in m²; 0 when they touch. In float.
-[[nodiscard]] inline float squared_distance(const PaddedBox& a, const PaddedBox& b) {
-    float squares[4];
-    for (int axis = 0; axis < 4; ++axis) {
-        const float before = b.lo[axis] - a.hi[axis], behind = a.lo[axis] - b.hi[axis];
+[[nodiscard]] inline float squared_distance(const Aabb& a, const Aabb& b) {
+    const auto outside = [](float a_lo, float a_hi, float b_lo, float b_hi) {
+        const float before = b_lo - a_hi, behind = a_lo - b_hi;
         const float gap = before > behind ? before : behind;
-        const float outside = gap > 0 ? gap : 0;
-        squares[axis] = outside * outside;
-    }
-    return squares[0] + squares[1] + squares[2];
+        return gap > 0 ? gap : 0;
+    };
+    const float x = outside(a.lo.x, a.hi.x, b.lo.x, b.hi.x), y = outside(a.lo.y, a.hi.y, b.lo.y, b.hi.y),
+                z = outside(a.lo.z, a.hi.z, b.lo.z, b.hi.z);
+    return x * x + y * y + z * z;
 }
 
 /// A RowGrid of boxes that are larger by half of the radius on each side, and an exact test of the pairs that it finds.
@@ -49,7 +42,7 @@ private:
     void clear();
     void update(const IndexedBoxes& in, float radius, TaskRunner* tasks);
     void build(const IndexedBoxes& in);
-    void number_by_rows(const IndexedBoxes& in);
+    void store_all(const IndexedBoxes& in);
     void follow(const IndexedBoxes& in, TaskRunner* tasks);
     void insert_and_erase(const IndexedBoxes& in);
     void set_box(Number number, const Aabb& box);
@@ -59,7 +52,7 @@ private:
     broad::RowGrid grid_;
     std::vector<Number> number_of_;       // by proxy; no_index: not in the grid
     std::vector<broad::Proxy> proxy_of_;  // by number
-    std::vector<PaddedBox> boxes_;        // by number
+    std::vector<Aabb> boxes_;             // by number
     std::vector<Aabb> grown_;             // by number
     std::vector<Number> free_;
     std::vector<Number> moved_;
