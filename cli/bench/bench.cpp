@@ -1,6 +1,7 @@
 /// The command `fase bench` in a program with benchmarks.
 #include "cli/bench/bench.hpp"
 
+#include "cli/bench/index.hpp"
 #include "cli/bench/pairs.hpp"
 #include "cli/bench/queries.hpp"
 #include "cli/bench/step.hpp"
@@ -16,6 +17,7 @@ void add_bench(Command& program, CommandRegistry& registry) {
     add_bench_pairs(group, registry);
     add_bench_queries(group, registry);
     add_bench_sudden(group, registry);
+    add_bench_index(group, registry);
 }
 
 }  // namespace fase::cli
