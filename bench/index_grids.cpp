@@ -3,7 +3,7 @@
 #include <unordered_map>
 
 #include "bench/index_contender.hpp"
-#include "fase/query/detail/neighbour_grid.hpp"
+#include "fase/query/detail/near_pairs.hpp"
 
 namespace fase::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bench/index_contender.hpp"
-#include "fase/query/detail/neighbour_grid.hpp"
+#include "fase/query/detail/near_pairs.hpp"
 
 namespace fase::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/index_contender.hpp"
-#include "fase/query/detail/neighbour_grid.hpp"
+#include "fase/query/detail/near_pairs.hpp"
 
 namespace fase::bench {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 /// Multi-level grid with boxes sorted in rows: rebuilt for moving boxes, changed in place for resting ones.
+#include <concepts>
 #include <cstdint>
 #include <span>
 
@@ -36,15 +37,19 @@ public:
     }
     /// Moves many boxes, each at most once, to by_proxy[proxy]. With tasks, on several threads.
     void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
-        move_all(
+        move(
             tasks, proxies.size(), [=](std::size_t k) { return proxies[k]; },
             [=](std::size_t k) -> const Aabb& { return by_proxy[proxies[k]]; });
     }
     void move(TaskRunner* tasks, std::span<const Move> moves) {
-        move_all(
+        move(
             tasks, moves.size(), [=](std::size_t k) { return moves[k].proxy; },
             [=](std::size_t k) -> const Aabb& { return moves[k].box; });
     }
+    /// Moves `count` boxes, each at most once: proxy_of(k) to box_of(k). With tasks, several threads call both.
+    template <class ProxyOf, class BoxOf>
+    requires std::invocable<const BoxOf&, std::size_t>
+    void move(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void erase(Proxy p) { part_of(p).erase(p); }
     void set_awake(Proxy p, bool awake);
     [[nodiscard]] bool is_awake(Proxy p) const { return moving_.holds(p); }
@@ -91,8 +96,6 @@ private:
     mutable ThreadLocalPairBuffers buffers_;  // scratch of find_pairs() with tasks
 
     [[nodiscard]] RowPartition& part_of(Proxy p) { return moving_.holds(p) ? moving_ : resting_; }
-    template <class ProxyOf, class BoxOf>
-    void move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void commit(TaskRunner* tasks);
     void find(TaskRunner* tasks, bool with_resting, std::vector<Pair>& out) const;
     void find_unbounded_pairs(bool with_resting, std::vector<Pair>& out) const;
@@ -103,7 +106,8 @@ private:
 };
 
 template <class ProxyOf, class BoxOf>
-void RowGrid::move_all(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of) {
+requires std::invocable<const BoxOf&, std::size_t>
+void RowGrid::move(TaskRunner* tasks, std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of) {
     std::size_t remaining = moving_.move_in_place(tasks, count, proxy_of, box_of);
     if (remaining == 0) return;
     const bool all = remaining == count;

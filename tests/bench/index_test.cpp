@@ -6,7 +6,7 @@
 #include <set>
 
 #include "fase/core/random.hpp"
-#include "fase/query/detail/neighbour_grid.hpp"
+#include "fase/query/detail/near_pairs.hpp"
 
 namespace fase::bench {
 namespace {

@@ -28,49 +28,48 @@ void NeighbourGrid::clear() { *this = NeighbourGrid(); }
 
 std::size_t NeighbourGrid::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof list[0]; };
-    return sizeof *this + grid_.bytes() + of(number_of_) + of(proxy_of_) + of(boxes_) + of(grown_) + of(free_) +
-           of(moved_) + changes_.bytes();
+    return sizeof *this + grid_.bytes() + of(number_of_) + of(rows_) + of(free_) + of(moved_) + changes_.bytes();
 }
 
-void NeighbourGrid::set_box(Number number, const Aabb& box) {
+/// Sets the box of a number and returns that of the grid.
+Aabb NeighbourGrid::set_box(Number number, const Aabb& box) {
     // More than half of the radius, by more than the rounding here and in squared_distance(): no near pair is missed.
     constexpr float slack = 4e-7f;
     const float half = 0.5f * radius_ * (1 + slack);
     const auto growth = [=](Vec3 v) { return abs(v) * slack + Vec3{half, half, half}; };
-    boxes_[number] = box;
-    grown_[number] = {box.lo - growth(box.lo), box.hi + growth(box.hi)};
+    rows_[number].lo = box.lo;
+    rows_[number].hi = box.hi;
+    return {box.lo - growth(box.lo), box.hi + growth(box.hi)};
 }
 
 void NeighbourGrid::build(const IndexedBoxes& in) {
-    proxy_of_.clear();
+    std::vector<Proxy> proxies, in_rows;
     for (Proxy p = 0; p < in.states.size(); ++p)
-        if (in.states[p] & holds_value) proxy_of_.push_back(p);
-    store_all(in);
-    std::vector<Proxy> in_rows;
-    in_rows.reserve(proxy_of_.size());
+        if (in.states[p] & holds_value) proxies.push_back(p);
+    store_all(in, proxies);
+    in_rows.reserve(proxies.size());
     grid_.traverse(broad::Everything{}, [&](Number number, const Aabb&) {
-        in_rows.push_back(proxy_of_[number]);
+        in_rows.push_back(proxies[number]);
         return true;
     });
-    proxy_of_.swap(in_rows);
-    store_all(in);
+    store_all(in, in_rows);
     mixed_ = false;
     inserted_ = 0;
     spread_ = 0;
 }
 
-/// Stores all boxes in the grid, numbered by their place in proxy_of_.
-void NeighbourGrid::store_all(const IndexedBoxes& in) {
+/// Stores boxes in the grid, numbered by their place in `proxies`.
+void NeighbourGrid::store_all(const IndexedBoxes& in, std::span<const Proxy> proxies) {
     number_of_.assign(in.states.size(), no_index);
     changes_.forget();
     free_.clear();
-    boxes_.resize(proxy_of_.size());
-    grown_.resize(proxy_of_.size());
-    std::vector<Move> all(proxy_of_.size());
-    for (Number number = 0; number < proxy_of_.size(); ++number) {
-        number_of_[proxy_of_[number]] = number;
-        set_box(number, in.boxes[proxy_of_[number]]);
-        all[number] = {number, grown_[number]};
+    rows_.resize(proxies.size());
+    std::vector<Move> all(proxies.size());
+    for (Number number = 0; number < proxies.size(); ++number) {
+        const Proxy p = proxies[number];
+        number_of_[p] = number;
+        rows_[number].set_proxy(p);
+        all[number] = {number, set_box(number, in.boxes[p])};
     }
     grid_.build(all);
 }
@@ -85,22 +84,19 @@ void NeighbourGrid::insert_and_erase(const IndexedBoxes& in) {
         if (!exists) {
             grid_.erase(number);
             free_.push_back(number);
-            proxy_of_[number] = no_index;
+            rows_[number].set_proxy(no_index);
             number = no_index;
             continue;
         }
         if (free_.empty()) {
-            number = static_cast<Number>(proxy_of_.size());
-            proxy_of_.push_back(p);
-            boxes_.emplace_back();
-            grown_.emplace_back();
+            number = static_cast<Number>(rows_.size());
+            rows_.emplace_back();
         } else {
             number = free_.back();
             free_.pop_back();
-            proxy_of_[number] = p;
         }
-        set_box(number, in.boxes[p]);
-        grid_.insert(number, grown_[number]);
+        rows_[number].set_proxy(p);
+        grid_.insert(number, set_box(number, in.boxes[p]));
         ++inserted_;
     }
 }
@@ -110,24 +106,23 @@ void NeighbourGrid::follow(const IndexedBoxes& in, TaskRunner* tasks) {
     moved_.clear();
     moved_.reserve(changes_.proxies().size());
     insert_and_erase(in);
-    const auto move = [&](Number number, Proxy p) {
-        set_box(number, in.boxes[p]);
-        moved_.push_back(number);
-    };
-    if (2 * changes_.proxies().size() > proxy_of_.size()) {  // in the order of the grid, which its memory is in
-        constexpr std::size_t ahead = 16;
-        for (Number number = 0; number < proxy_of_.size(); ++number) {
-            if (number + ahead < proxy_of_.size() && proxy_of_[number + ahead] != no_index)
-                detail::prefetch(in.boxes[proxy_of_[number + ahead]]);
-            const Proxy p = proxy_of_[number];
-            if (p != no_index && changes_.is_pending(p)) move(number, p);
+    if (2 * changes_.proxies().size() > rows_.size()) {  // in the order of the grid, which its memory is in
+        for (Number number = 0; number < rows_.size(); ++number) {
+            const Proxy p = rows_[number].proxy();
+            if (p != no_index && changes_.is_pending(p)) moved_.push_back(number);
         }
     } else {
         for (const Proxy p : changes_.proxies())
-            if (changes_.is_pending(p) && number_of_[p] != no_index) move(number_of_[p], p);
+            if (changes_.is_pending(p) && number_of_[p] != no_index) moved_.push_back(number_of_[p]);
     }
     changes_.forget();
-    grid_.move(tasks, std::span<const Number>(moved_), std::span<const Aabb>(grown_));
+    constexpr std::size_t ahead = 16;
+    const auto box_of = [&](std::size_t k) {
+        if (k + ahead < moved_.size()) detail::prefetch(in.boxes[rows_[moved_[k + ahead]].proxy()]);
+        return set_box(moved_[k], in.boxes[rows_[moved_[k]].proxy()]);
+    };
+    grid_.move(
+        tasks, moved_.size(), [&](std::size_t k) { return moved_[k]; }, box_of);
     tasks != nullptr ? grid_.commit(*tasks) : grid_.commit();
 }
 
@@ -135,7 +130,7 @@ void NeighbourGrid::update(const IndexedBoxes& in, float radius, TaskRunner* tas
     const bool other_radius = radius != radius_;
     radius_ = radius;
     try {
-        if (!built_ || other_radius || mixed_ || 4 * inserted_ > proxy_of_.size()) {
+        if (!built_ || other_radius || mixed_ || 4 * inserted_ > rows_.size()) {
             build(in);
         } else if (!changes_.proxies().empty()) {
             follow(in, tasks);
@@ -148,16 +143,8 @@ void NeighbourGrid::update(const IndexedBoxes& in, float radius, TaskRunner* tas
 }
 
 void NeighbourGrid::keep_near(float limit, TaskRunner* tasks, std::vector<Pair>& pairs) {
-    // Without branches: about a quarter of the pairs is too far, in no pattern. Returns the new end.
     const auto keep = [&](std::size_t begin, std::size_t end) {
-        std::size_t at = begin;
-        for (std::size_t i = begin; i < end; ++i) {
-            const Pair pair = pairs[i];
-            const Proxy a = proxy_of_[pair.a], b = proxy_of_[pair.b];
-            pairs[at] = {std::min(a, b), std::max(a, b)};
-            at += squared_distance(boxes_[pair.a], boxes_[pair.b]) <= limit ? 1 : 0;
-        }
-        return at;
+        return keep_near_pairs(rows_.data(), limit, pairs.data() + begin, end - begin);
     };
     if (tasks == nullptr || tasks->threads() == 1) {
         pairs.resize(keep(0, pairs.size()));
@@ -165,9 +152,8 @@ void NeighbourGrid::keep_near(float limit, TaskRunner* tasks, std::vector<Pair>&
     }
     const std::size_t chunks = (pairs.size() + pairs_per_task - 1) / pairs_per_task;
     std::vector<std::size_t> kept(chunks, 0);
-    parallel_ranges(*tasks, pairs.size(), pairs_per_task, [&](std::size_t begin, std::size_t end) {
-        kept[begin / pairs_per_task] = keep(begin, end) - begin;
-    });
+    parallel_ranges(*tasks, pairs.size(), pairs_per_task,
+                    [&](std::size_t begin, std::size_t end) { kept[begin / pairs_per_task] = keep(begin, end); });
     std::size_t at = 0;
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
         const auto from = pairs.begin() + static_cast<std::ptrdiff_t>(chunk * pairs_per_task);

@@ -6,22 +6,11 @@
 
 #include "fase/broad/row_grid.hpp"
 #include "fase/core/tasks.hpp"
+#include "fase/query/detail/near_pairs.hpp"
 #include "fase/query/detail/pending_changes.hpp"
 #include "fase/query/on_demand.hpp"
 
 namespace fase::query {
-
-/// Returns the square of the distance between two boxes, in m²; 0 when they touch. In float.
-[[nodiscard]] inline float squared_distance(const Aabb& a, const Aabb& b) {
-    const auto outside = [](float a_lo, float a_hi, float b_lo, float b_hi) {
-        const float before = b_lo - a_hi, behind = a_lo - b_hi;
-        const float gap = before > behind ? before : behind;
-        return gap > 0 ? gap : 0;
-    };
-    const float x = outside(a.lo.x, a.hi.x, b.lo.x, b.hi.x), y = outside(a.lo.y, a.hi.y, b.lo.y, b.hi.y),
-                z = outside(a.lo.z, a.hi.z, b.lo.z, b.hi.z);
-    return x * x + y * y + z * z;
-}
 
 /// A RowGrid of boxes that are larger by half of the radius on each side, and an exact test of the pairs that it finds.
 /// The boxes have numbers of their own, in the order of the grid's rows, so that the test of a pair reads memory near
@@ -42,18 +31,16 @@ private:
     void clear();
     void update(const IndexedBoxes& in, float radius, TaskRunner* tasks);
     void build(const IndexedBoxes& in);
-    void store_all(const IndexedBoxes& in);
+    void store_all(const IndexedBoxes& in, std::span<const broad::Proxy> proxies);
     void follow(const IndexedBoxes& in, TaskRunner* tasks);
     void insert_and_erase(const IndexedBoxes& in);
-    void set_box(Number number, const Aabb& box);
+    Aabb set_box(Number number, const Aabb& box);
     void keep_near(float limit, TaskRunner* tasks, std::vector<broad::Pair>& pairs);
     void watch_locality(std::span<const broad::Pair> pairs);
 
     broad::RowGrid grid_;
-    std::vector<Number> number_of_;       // by proxy; no_index: not in the grid
-    std::vector<broad::Proxy> proxy_of_;  // by number
-    std::vector<Aabb> boxes_;             // by number
-    std::vector<Aabb> grown_;             // by number
+    std::vector<Number> number_of_;  // by proxy; no_index: not in the grid
+    std::vector<BoxRow> rows_;       // by number; proxy no_index: free
     std::vector<Number> free_;
     std::vector<Number> moved_;
     PendingChanges changes_;
