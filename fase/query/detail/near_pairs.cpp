@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "fase/core/detail/prefetch.hpp"
 #include "fase/math/detail/lane.hpp"
 #include "fase/math/detail/wide-inl.hpp"
 #include "fase/query/detail/near_pairs.hpp"
@@ -33,8 +34,12 @@ HWY_INLINE Wide squared_distances(const Wide* a, const Wide* b) {
 std::size_t keep_wide(const BoxRow* rows, float limit, broad::Pair* pairs, std::size_t count) {
     constexpr auto lanes = static_cast<std::size_t>(Wide::lanes);
     const float* const floats = &rows->lo.x;
+    constexpr std::size_t ahead = 64;
     std::size_t kept = 0, i = 0;
     for (; i + lanes <= count; i += lanes) {
+        // The boxes are read in two or three ascending sequences; what is read first comes from far away.
+        if (i + ahead + lanes <= count)
+            for (std::size_t k = i + ahead; k < i + ahead + lanes; ++k) detail::prefetch(rows[pairs[k].b]);
         std::uint32_t a[lanes], b[lanes];
         for (std::size_t k = 0; k < lanes; ++k) {
             a[k] = pairs[i + k].a;

@@ -18,6 +18,18 @@ constexpr std::size_t sample = 256;  // pairs whose numbers are looked at
 constexpr double mixed_factor = 8;   // numbers are given anew when pairs lie so much farther apart
 constexpr std::size_t pairs_per_task = 8192;
 
+/// Stores a box and returns that of the grid. Inlined, because a box that is returned through memory is written in
+/// floats and read in vectors, which waits for the cache.
+[[gnu::always_inline]] inline Aabb set_box(BoxRow& row, const Aabb& box, float radius) {
+    // More than half of the radius, by more than the rounding here and in squared_distance(): no near pair is missed.
+    constexpr float slack = 4e-7f;
+    const float half = 0.5f * radius * (1 + slack);
+    const auto growth = [=](Vec3 v) { return abs(v) * slack + Vec3{half, half, half}; };
+    row.lo = box.lo;
+    row.hi = box.hi;
+    return {box.lo - growth(box.lo), box.hi + growth(box.hi)};
+}
+
 }  // namespace
 
 void NeighbourGrid::commit(std::span<const Proxy> changed, std::size_t proxies) {
@@ -29,17 +41,6 @@ void NeighbourGrid::clear() { *this = NeighbourGrid(); }
 std::size_t NeighbourGrid::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof list[0]; };
     return sizeof *this + grid_.bytes() + of(number_of_) + of(rows_) + of(free_) + of(moved_) + changes_.bytes();
-}
-
-/// Sets the box of a number and returns that of the grid.
-Aabb NeighbourGrid::set_box(Number number, const Aabb& box) {
-    // More than half of the radius, by more than the rounding here and in squared_distance(): no near pair is missed.
-    constexpr float slack = 4e-7f;
-    const float half = 0.5f * radius_ * (1 + slack);
-    const auto growth = [=](Vec3 v) { return abs(v) * slack + Vec3{half, half, half}; };
-    rows_[number].lo = box.lo;
-    rows_[number].hi = box.hi;
-    return {box.lo - growth(box.lo), box.hi + growth(box.hi)};
 }
 
 void NeighbourGrid::build(const IndexedBoxes& in) {
@@ -69,7 +70,7 @@ void NeighbourGrid::store_all(const IndexedBoxes& in, std::span<const Proxy> pro
         const Proxy p = proxies[number];
         number_of_[p] = number;
         rows_[number].set_proxy(p);
-        all[number] = {number, set_box(number, in.boxes[p])};
+        all[number] = {number, set_box(rows_[number], in.boxes[p], radius_)};
     }
     grid_.build(all);
 }
@@ -96,7 +97,7 @@ void NeighbourGrid::insert_and_erase(const IndexedBoxes& in) {
             free_.pop_back();
         }
         rows_[number].set_proxy(p);
-        grid_.insert(number, set_box(number, in.boxes[p]));
+        grid_.insert(number, set_box(rows_[number], in.boxes[p], radius_));
         ++inserted_;
     }
 }
@@ -104,25 +105,38 @@ void NeighbourGrid::insert_and_erase(const IndexedBoxes& in) {
 void NeighbourGrid::follow(const IndexedBoxes& in, TaskRunner* tasks) {
     number_of_.resize(in.states.size(), no_index);
     moved_.clear();
-    moved_.reserve(changes_.proxies().size());
     insert_and_erase(in);
-    if (2 * changes_.proxies().size() > rows_.size()) {  // in the order of the grid, which its memory is in
+    // In the order of the grid, which its memory is in, if many moved; all of them, if nearly all moved.
+    const std::size_t count = changes_.proxies().size();
+    const bool all = free_.empty() && 4 * count >= 3 * rows_.size();
+    if (!all && 2 * count > rows_.size()) {
         for (Number number = 0; number < rows_.size(); ++number) {
             const Proxy p = rows_[number].proxy();
             if (p != no_index && changes_.is_pending(p)) moved_.push_back(number);
         }
-    } else {
+    } else if (!all) {
         for (const Proxy p : changes_.proxies())
             if (changes_.is_pending(p) && number_of_[p] != no_index) moved_.push_back(number_of_[p]);
     }
     changes_.forget();
-    constexpr std::size_t ahead = 16;
-    const auto box_of = [&](std::size_t k) {
-        if (k + ahead < moved_.size()) detail::prefetch(in.boxes[rows_[moved_[k + ahead]].proxy()]);
-        return set_box(moved_[k], in.boxes[rows_[moved_[k]].proxy()]);
+    const auto move = [&](std::size_t moves, const auto& number_of) {
+        constexpr std::size_t ahead = 32;
+        const auto box_of = [=, rows = rows_.data(), boxes = in.boxes.data(), radius = radius_](std::size_t k) {
+            if (k + ahead < moves) {
+                const Aabb& later = boxes[rows[number_of(k + ahead)].proxy()];
+                detail::prefetch(later.lo.x);
+                detail::prefetch(later.hi.z);
+            }
+            BoxRow& row = rows[number_of(k)];
+            return set_box(row, boxes[row.proxy()], radius);
+        };
+        grid_.move(tasks, moves, number_of, box_of);
     };
-    grid_.move(
-        tasks, moved_.size(), [&](std::size_t k) { return moved_[k]; }, box_of);
+    if (all) {
+        move(rows_.size(), [](std::size_t k) { return static_cast<Number>(k); });
+    } else {
+        move(moved_.size(), [&](std::size_t k) { return moved_[k]; });
+    }
     tasks != nullptr ? grid_.commit(*tasks) : grid_.commit();
 }
 
