@@ -5,6 +5,7 @@
 
 #include "fase/broad/boxes/box_store.hpp"
 #include "fase/core/detail/check.hpp"
+#include "fase/core/detail/prefetch.hpp"
 
 namespace fase::broad {
 
@@ -36,6 +37,31 @@ void WideBvh::move(Proxy p, const Aabb& box) {
         remove_from_list(p);
         add_to_list(p, box);
     }
+}
+
+template <class ProxyOf, class BoxOf>
+void WideBvh::move_all(std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of) {
+    constexpr std::size_t ahead = 16;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k + 2 * ahead < count) {
+            detail::prefetch(locations_[proxy_of(k + 2 * ahead)]);
+            const Location& soon = locations_[proxy_of(k + ahead)];
+            if (soon.where == Where::Tree) detail::prefetch(forest_.nodes[soon.at / width].plane);
+        }
+        move(proxy_of(k), box_of(k));
+    }
+}
+
+void WideBvh::move(TaskRunner*, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy) {
+    move_all(
+        proxies.size(), [=](std::size_t k) { return proxies[k]; },
+        [=](std::size_t k) -> const Aabb& { return by_proxy[proxies[k]]; });
+}
+
+void WideBvh::move(TaskRunner*, std::span<const Move> moves) {
+    move_all(
+        moves.size(), [=](std::size_t k) { return moves[k].proxy; },
+        [=](std::size_t k) -> const Aabb& { return moves[k].box; });
 }
 
 void WideBvh::erase(Proxy p) {

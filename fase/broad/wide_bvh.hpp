@@ -46,6 +46,9 @@ public:
 
     void insert(Proxy p, const Aabb& box);
     void move(Proxy p, const Aabb& box);
+    /// Moves many boxes, each at most once, to by_proxy[proxy]. On this thread, but requests the nodes ahead.
+    void move(TaskRunner* tasks, std::span<const Proxy> proxies, std::span<const Aabb> by_proxy);
+    void move(TaskRunner* tasks, std::span<const Move> moves);
     void erase(Proxy p);
     void set_awake(Proxy p, bool awake);
     [[nodiscard]] bool is_awake(Proxy p) const { return locations_[p].awake; }
@@ -113,6 +116,8 @@ private:
 
     void add_to_list(Proxy p, const Aabb& box);
     void remove_from_list(Proxy p);
+    template <class ProxyOf, class BoxOf>
+    void move_all(std::size_t count, const ProxyOf& proxy_of, const BoxOf& box_of);
     void remove_from_tree(Proxy p);
     void mark_dirty(std::uint32_t node);
     void set_awake_bit(wide::Place place, bool awake);
