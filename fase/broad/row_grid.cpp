@@ -113,6 +113,24 @@ void RowGrid::find(TaskRunner* tasks, bool with_resting, std::vector<Pair>& out)
                              [&](std::size_t chunk, PairBlock& block) { chunks.find(chunk, block); });
 }
 
+void RowGrid::find_pairs(TaskRunner* tasks, KeepPairs keep, std::vector<Pair>& out) const {
+    const auto filter = [&](std::vector<Pair>& pairs, std::size_t first) {
+        pairs.resize(first + keep(pairs.data() + first, pairs.size() - first));
+    };
+    const std::size_t before = out.size();
+    find_unbounded_pairs(true, out);
+    filter(out, before);
+    const Chunks chunks(moving_, resting_, true);
+    find_in_parts(tasks, chunks.count, buffers_, out, [&](std::size_t chunk, std::vector<Pair>& pairs) {
+        const std::size_t first = pairs.size();
+        {
+            PairBlock block(pairs);
+            chunks.find(chunk, block);
+        }
+        filter(pairs, first);
+    });
+}
+
 void RowGrid::find_unbounded_pairs(bool with_resting, std::vector<Pair>& out) const {
     if (moving_.unbounded().empty() && resting_.unbounded().empty()) return;
     for (const RowPartition* part : {&moving_, &resting_}) {

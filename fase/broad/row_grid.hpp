@@ -7,6 +7,7 @@
 #include "fase/broad/row_grid/partition.hpp"
 #include "fase/broad/row_grid_settings.hpp"
 #include "fase/broad/search/partitioned_search.hpp"
+#include "fase/core/detail/function_ref.hpp"
 #include "fase/core/tasks.hpp"
 
 namespace fase::broad {
@@ -71,6 +72,10 @@ public:
     void find_awake_pairs(std::vector<Pair>& out) const { find(nullptr, false, out); }
     /// Same as find_pairs(out), on several threads, with the same order of the pairs.
     void find_pairs(TaskRunner& tasks, std::vector<Pair>& out) const { find(&tasks, true, out); }
+    /// Same, filtered while the pairs are in the cache: keep(pairs, count) changes a list of pairs in place and returns
+    /// how many remain at its front. Each pair is in one list. With several threads, these call it at the same time.
+    using KeepPairs = FunctionRef<std::size_t(Pair* pairs, std::size_t count)>;
+    void find_pairs(TaskRunner* tasks, KeepPairs keep, std::vector<Pair>& out) const;
     /// broad::find_pairs_of(): tests each query box against the ranges of the rows that it overlaps.
     void find_pairs_of(std::span<const Move> query_boxes, std::span<const std::uint8_t> is_query,
                        std::vector<Pair>& out) const;

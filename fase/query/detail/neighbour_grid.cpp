@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t sample = 256;  // pairs whose numbers are looked at
 constexpr double mixed_factor = 8;   // numbers are given anew when pairs lie so much farther apart
-constexpr std::size_t pairs_per_task = 8192;
 
 /// Stores a box and returns that of the grid. Inlined, because a box that is returned through memory is written in
 /// floats and read in vectors, which waits for the cache.
@@ -156,35 +155,14 @@ void NeighbourGrid::update(const IndexedBoxes& in, float radius, TaskRunner* tas
     built_ = true;
 }
 
-void NeighbourGrid::keep_near(float limit, TaskRunner* tasks, std::vector<Pair>& pairs) {
-    const auto keep = [&](std::size_t begin, std::size_t end) {
-        return keep_near_pairs(rows_.data(), limit, pairs.data() + begin, end - begin);
-    };
-    if (tasks == nullptr || tasks->threads() == 1) {
-        pairs.resize(keep(0, pairs.size()));
-        return;
-    }
-    const std::size_t chunks = (pairs.size() + pairs_per_task - 1) / pairs_per_task;
-    std::vector<std::size_t> kept(chunks, 0);
-    parallel_ranges(*tasks, pairs.size(), pairs_per_task,
-                    [&](std::size_t begin, std::size_t end) { kept[begin / pairs_per_task] = keep(begin, end); });
-    std::size_t at = 0;
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-        const auto from = pairs.begin() + static_cast<std::ptrdiff_t>(chunk * pairs_per_task);
-        std::copy(from, from + static_cast<std::ptrdiff_t>(kept[chunk]),
-                  pairs.begin() + static_cast<std::ptrdiff_t>(at));
-        at += kept[chunk];
-    }
-    pairs.resize(at);
-}
-
 /// Compares how far apart the numbers of pairs are with how far they were when they were given.
 void NeighbourGrid::watch_locality(std::span<const Pair> pairs) {
     if (pairs.size() < sample) return;
     double sum = 0;
     for (std::size_t i = 0; i < sample; ++i) {
         const Pair pair = pairs[i * (pairs.size() / sample)];
-        sum += pair.a < pair.b ? pair.b - pair.a : pair.a - pair.b;
+        const Number a = number_of_[pair.a], b = number_of_[pair.b];
+        sum += a < b ? b - a : a - b;
     }
     const double mean = sum / sample;
     if (spread_ == 0) spread_ = std::max(mean, 1000.0);
@@ -195,9 +173,13 @@ void NeighbourGrid::find(const IndexedBoxes& in, float radius, TaskRunner* tasks
     changes_.use();
     out.clear();
     update(in, radius, tasks);
-    tasks != nullptr ? grid_.find_pairs(*tasks, out) : grid_.find_pairs(out);
+    grid_.find_pairs(
+        tasks,
+        [rows = rows_.data(), limit = radius * radius](Pair* pairs, std::size_t count) {
+            return keep_near_pairs(rows, limit, pairs, count);
+        },
+        out);
     watch_locality(out);
-    keep_near(radius * radius, tasks, out);
 }
 
 }  // namespace fase::query

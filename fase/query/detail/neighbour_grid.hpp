@@ -34,7 +34,6 @@ private:
     void store_all(const IndexedBoxes& in, std::span<const broad::Proxy> proxies);
     void follow(const IndexedBoxes& in, TaskRunner* tasks);
     void insert_and_erase(const IndexedBoxes& in);
-    void keep_near(float limit, TaskRunner* tasks, std::vector<broad::Pair>& pairs);
     void watch_locality(std::span<const broad::Pair> pairs);
 
     broad::RowGrid grid_;
