@@ -15,6 +15,7 @@
 
 #include "fase/broad/boxes/local_stack.hpp"
 #include "fase/broad/wide_bvh/kernels.hpp"
+#include "fase/core/detail/prefetch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace fase::broad::wide::HWY_NAMESPACE {

@@ -149,6 +149,11 @@ HWY_INLINE Branch take_nearest(LocalStack<Branch, 256>& open, const Node& node, 
     return nearest;
 }
 
+/// Requests the node that a search visits next, after the branch that it is in.
+HWY_INLINE void prefetch_node(const Node* nodes, std::uint32_t link) {
+    if ((link & leaf_bit) == 0) detail::prefetch(nodes[link]);
+}
+
 template <class Test, class Measure>
 void search(const Forest& forest, Test test, const Measure& measure, float limit, VisitNear visit) {
     LocalStack<Branch, 256> open;
@@ -164,7 +169,10 @@ void search(const Forest& forest, Test test, const Measure& measure, float limit
             const Node& node = nodes[branch.link];
             const std::uint32_t bits = test.test(node, at);
             hit = bits != 0;
-            if (hit) branch = take_nearest(open, node, branch.link, bits, at);
+            if (hit) {
+                branch = take_nearest(open, node, branch.link, bits, at);
+                if (!open.empty()) prefetch_node(nodes, open.data()[open.size() - 1].link);
+            }
         }
         if (!hit) continue;
         const Place place = branch.link & ~leaf_bit;
