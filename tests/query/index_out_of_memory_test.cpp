@@ -1,6 +1,7 @@
 // An index in which the Nth allocation fails, for every N and every structure.
 #include "fase/broad/registry.hpp"
 #include "fase/core/random.hpp"
+#include "fase/query/detail/pending_changes.hpp"
 #include "fase/query/index.hpp"
 
 #include <gtest/gtest.h>
@@ -106,6 +107,26 @@ template <class S> void fail_each_allocation() {
 TEST(IndexOutOfMemory, changes_nothing_and_the_next_call_works) {
     fail_each_allocation<query::OnDemand>();
     broad::for_each_structure([]<broad::Structure S>() { fail_each_allocation<S>(); });
+}
+
+TEST(IndexOutOfMemory, a_commit_of_pending_changes_changes_nothing) {
+    using Proxies = std::vector<broad::Proxy>;
+    const Proxies first{3, 1}, second{2, 7, 1};
+    const auto pending = [](const query::PendingChanges& changes) {
+        return Proxies(changes.proxies().begin(), changes.proxies().end());
+    };
+    for (long n = 0;; ++n) {
+        ASSERT_LT(n, 10);
+        query::PendingChanges changes;
+        ASSERT_TRUE(changes.commit(true, first, 4));
+        changes.use();
+        if (run_with_failing_allocation(n, [&] { (void)changes.commit(true, second, 8); })) {
+            EXPECT_EQ(pending(changes), (Proxies{3, 1, 2, 7}));
+            break;
+        }
+        EXPECT_EQ(pending(changes), first);
+        for (int i = 0; i < 60; ++i) ASSERT_TRUE(changes.commit(true, {}, 8)) << "the use still counts";
+    }
 }
 
 }  // namespace
