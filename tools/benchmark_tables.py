@@ -1,7 +1,7 @@
 """The sections of docs/benchmarks_tables.md: one function per CSV file in bench/results, which returns Markdown text."""
 import csv
 
-from make_charts import last_rows, size_rows
+from make_charts import INDEX_QUESTIONS, index_rows, last_rows, size_rows
 
 
 def line_of(cells):
@@ -279,6 +279,43 @@ def query_section(path):
     return "\n".join(parts)
 
 
+INDEX_FIGURES = "bench/results/index.csv"
+INDEX_HEAD = """
+## An index
+
+From `{figures}`. Add rows with `build/release/fase bench index --csv {figures}`.
+
+Units of 1 × 2 × 1 m stand on a square with 31 m² for each. In each round all of them move by up to 0.2 m in both directions; then come the
+questions. Milliseconds, median of the rounds, in brackets the worst round; one thread, processor time. All contenders alternate in one run. In
+each round all answers are compared, in the first one with brute force. *–*: the contender has no such question.
+"""
+
+
+def index_table(path):
+    """One line for each question, one column for each contender."""
+    rows = index_rows(path)
+    contenders = list(dict.fromkeys(row["contender"] for row in rows))
+    cells = {(row["question"], row["contender"]): row for row in rows}
+
+    def short(row):
+        digits = 2 if float(row["worst_ms"]) < 10 else 1 if float(row["worst_ms"]) < 100 else 0
+        return f"{float(row['median_ms']):.{digits}f} ({float(row['worst_ms']):.{digits}f})"
+
+    lines = head_of(["milliseconds", *(f"`{name}`" for name in contenders)])
+    for question, meaning, _ in INDEX_QUESTIONS:
+        if any((question, name) in cells for name in contenders):
+            lines.append(line_of([meaning, *(short(cells[question, name]) if (question, name) in cells else "–" for name in contenders)]))
+    return "\n".join(lines) + "\n"
+
+
+def index_section(path):
+    rows = index_rows(path)
+    settings = dict.fromkeys(f"`{row['contender']}`: {row['settings']}" for row in rows)
+    first = rows[0]
+    title = f"### {int(first['units']):,} units, {first['machine']}, {first['commit']}, {first['date']}"
+    return INDEX_HEAD.format(figures=INDEX_FIGURES) + f"\n{title}\n\n{index_table(path)}\n" + "; ".join(settings) + ".\n"
+
+
 LEVEL_FIGURES = "bench/results/level.csv"
 LEVEL_HEAD = """
 ## Levels
@@ -348,4 +385,4 @@ def level_maps(rows, kinds):
 
 # The CSV file and the function of each section, in the order of the page.
 SECTIONS = [(PAIR_FIGURES, pair_section), (SIZE_FIGURES, size_section), (QUERY_FIGURES, query_section), (STEP_FIGURES, step_section),
-            (SUDDEN_FIGURES, sudden_section), (STRUCTURE_FIGURES, structure_section), (LEVEL_FIGURES, level_section)]
+            (SUDDEN_FIGURES, sudden_section), (INDEX_FIGURES, index_section), (STRUCTURE_FIGURES, structure_section), (LEVEL_FIGURES, level_section)]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the five charts of docs/benchmarks.md from the CSV files in bench/results, as SVG files in docs/pictures.
+"""Draws the charts of docs/benchmarks.md from the CSV files in bench/results, as SVG files in docs/pictures.
 
 Usage: make_charts.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when a chart differs from what the
 figures give. A chart whose CSV file does not exist is left out. The last row in a file counts for its engine and scene.
@@ -53,7 +53,7 @@ def grouped_bars(canvas, groups, series, scale, top, mark=None):
                 canvas.line(x, y, x, y + BAR - 1, colour="#ffffff", width=2)
             canvas.text(end + 5, y + 11, svg.number(values[name]), halo=True)
             y += BAR
-        y += GAP
+        y += GAP + max(0, 2 * BAR - BAR * sum(name in values for name in series))  # the label has two lines
     return y - GAP
 
 
@@ -234,10 +234,54 @@ def sudden_chart(path):
     return canvas.finish()
 
 
+# Questions of index.csv: name in the file, what is asked. The third tells what the chart says of it; "" leaves it out.
+INDEX_QUESTIONS = [("moves", "new places for all units, and `commit()`", "moves"),
+                   ("neighbours_moved", "neighbours within 5 m, the first question after the moves", ""),
+                   ("frame", "both: what a frame needs", "moves, neighbours"),
+                   ("neighbours", "neighbours again", "neighbours"),
+                   ("grown_pairs", "pairs of boxes that are larger by 2.5 m on each side", ""),
+                   ("rectangles_moved", "units in 10 rectangles of 100 m, the first such question after the moves", "rectangles, first"),
+                   ("rectangles", "units in 10 rectangles again", ""),
+                   ("nearest_moved", "the nearest unit of 2,000 places, the first such question after the moves", "nearest, first"),
+                   ("nearest", "the nearest unit of 2,000 places again", ""),
+                   ("nearest_eight", "the nearest eight of 2,000 places", "nearest eight"),
+                   ("rays", "1,000 rays of 100 m", "rays")]
+INDEX_NOTES = {"moves": "all 200,000", "frame": "what a frame needs", "neighbours": "again", "rectangles_moved": "after the moves",
+               "nearest_moved": "after the moves", "nearest_eight": "of 2,000 places", "rays": "1,000"}
+INDEX_CONTENDERS = {"index": ("Index", svg.BLUE), "flat_grid": ("flat grid", svg.SLATE), "hash_grid": ("hash map grid", svg.VERMILION),
+                    "boost_rtree": ("Boost R-tree", svg.PURPLE), "nanoflann": ("nanoflann", svg.GREEN)}
+
+
+def index_rows(path):
+    """The last row for each question and contender, with one thread, of the first machine and number of units."""
+    rows = [row for row in last_rows(path, "machine", "units", "threads", "question", "contender") if row["threads"] == "1"]
+    return [row for row in rows if (row["machine"], row["units"]) == (rows[0]["machine"], rows[0]["units"])]
+
+
+def index_chart(path):
+    rows = index_rows(path)
+    if not rows:
+        return None
+    time = {(row["question"], row["contender"]): float(row["median_ms"]) for row in rows}
+    groups = [(label, INDEX_NOTES[question], {name: time[question, name] for name in INDEX_CONTENDERS if (question, name) in time})
+              for question, _, label in INDEX_QUESTIONS if label]
+    groups = [group for group in groups if group[2]]
+    low, high = decades([value for _, _, values in groups for value in values.values()])
+    height = 90 + sum(BAR * max(len(values), 2) + GAP for _, _, values in groups) + 45
+    canvas = svg.Canvas(height, "An index of many moving units",
+                        f"{int(rows[0]['units']):,} units, median, 1 thread, {rows[0]['machine']}; shorter is better")
+    canvas.legend(INDEX_CONTENDERS.values())
+    scale = svg.LogScale(low, high * 1.6, 160, svg.WIDTH - 40)
+    canvas.vertical_grid(scale, 82, height - 50, svg.tick)
+    grouped_bars(canvas, groups, {name: colour for name, (_, colour) in INDEX_CONTENDERS.items()}, scale, 90)
+    canvas.text((160 + svg.WIDTH - 40) / 2, height - 14, "milliseconds (logarithmic)", anchor="middle")
+    return canvas.finish()
+
+
 # Name of the SVG file, the CSV file, and the function that draws it, in the order of the page.
 CHARTS = [("pairs", "bench/results/pairs.csv", pairs_chart), ("sizes", "bench/results/sizes.csv", sizes_chart),
           ("queries", "bench/results/queries.csv", queries_chart), ("step", "bench/results/step.csv", step_chart),
-          ("sudden", "bench/results/sudden.csv", sudden_chart)]
+          ("sudden", "bench/results/sudden.csv", sudden_chart), ("index", "bench/results/index.csv", index_chart)]
 
 
 def charts_of(root):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes docs/benchmarks.md, docs/benchmarks_tables.md and the charts in docs/pictures from the CSV files in bench/results.
+"""Writes docs/benchmarks.md, docs/benchmarks_tables.md, the charts in docs/pictures and the table in docs/guides/index.md from the CSV
+files in bench/results.
 
 Usage: make_tables.py [--check] [REPOSITORY]. With --check nothing is written: exit code 1 when a page or chart differs from what
 the figures give. Where rows repeat (same machine, scene, engine and threads), the last row in the file counts.
@@ -8,15 +9,18 @@ import sys
 from pathlib import Path
 
 import benchmark_tables as tables
+import make_charts
 import svg
 from make_charts import CHARTS, FOLDER, PAIR_ENGINES, QUERY_PEERS, STEP_ENGINES, STEP_SCENES, charts_of, last_rows, write_or_check
 
 PAGE = "docs/benchmarks.md"
 APPENDIX = "docs/benchmarks_tables.md"
+GUIDE = "docs/guides/index.md"
+GUIDE_TABLE = ("<!-- tools/make_tables.py writes this table -->\n", "<!-- end of the table -->\n")
 
 PAGE_HEAD = """# Benchmarks
 
-Five charts compare Fase with other libraries and its structures with each other; one table sums up. The figures behind them
+Six charts compare Fase with other libraries and its structures with each other; one table sums up. The figures behind them
 are in [bench/results](../bench/results) (CSV) and in the [full tables](benchmarks_tables.md).
 """
 
@@ -29,6 +33,8 @@ CHART_TEXT = {
                 "([decision 9](decisions/0009-two-sets-of-trees.md))."),
     "step": ("Steps", "Full steps of the same scenes: broad phase, narrow phase and solver. The tables also show whether the piles still "
              "stand at the end."),
+    "index": ("An index", "Many units that all move, and the questions of a frame. What each figure means: "
+              "[which call for which question](guides/index.md#how-long-it-takes)."),
     "sudden": ("Sudden changes", "A game loses a frame when a single step takes too long, so the worst frame counts here, not the mean."),
 }
 
@@ -58,9 +64,9 @@ tools/make_tables.py                                 # this page, its charts and
 ```
 
 The build includes each library that CMake finds (on Debian: `libbullet-dev`, `libembree-dev`, `libfcl-dev`, `libode-dev`,
-`libcgal-dev`, `libboost-dev`); `tools/install_peers` installs the level compilers.
+`libcgal-dev`, `libboost-dev`); `tools/install_peers` installs nanoflann and the level compilers.
 
-`fase bench pairs`, `queries` and `sudden` take `--csv`, too; `tools/measure_sizes.py`, `tools/measure_structures.py` and
+`fase bench pairs`, `queries`, `sudden` and `index` take `--csv`, too; `tools/measure_sizes.py`, `tools/measure_structures.py` and
 `tools/measure_level.py` write their CSV file. `tools/make_tables.py --check`, which the tests run, fails when this page, a chart or a table
 differs from the CSV files; do not edit them by hand.
 """
@@ -111,6 +117,19 @@ def step_summary(path):
                    f"Bullet: {svg.number(theirs)} ms", theirs / ours]
 
 
+def index_summary(path):
+    """What a frame needs, and the question that a k-d tree of points answers best, beside the fastest other contender."""
+    rows = make_charts.index_rows(path)
+    for asked, question in (("frame", "a frame of moves and neighbours"), ("nearest_eight", "the nearest eight of 2,000 places")):
+        some = {row["contender"]: row for row in rows if row["question"] == asked}
+        others = [row for name, row in some.items() if name in make_charts.INDEX_CONTENDERS and name != "index"]
+        if "index" in some and others:
+            best = min(others, key=lambda row: float(row["median_ms"]))
+            ours, theirs = float(some["index"]["median_ms"]), float(best["median_ms"])
+            name = make_charts.INDEX_CONTENDERS[best["contender"]][0]
+            yield [question, f"{int(best['units']):,} units", f"{svg.number(ours)} ms", f"{name}: {svg.number(theirs)} ms", theirs / ours]
+
+
 def level_summary(path):
     """One line: all maps compiled with default settings, beside zdbsp."""
     rows = [row for row in last_rows(path, "machine", "compiler", "settings", "wad", "map") if row["settings"] == "default"]
@@ -126,7 +145,7 @@ def level_summary(path):
 
 
 # The CSV file and the function of each part of the summary, in the order of the table.
-SUMMARIES = [(tables.PAIR_FIGURES, pair_summary), (tables.QUERY_FIGURES, query_summary), (tables.STEP_FIGURES, step_summary),
+SUMMARIES = [(tables.PAIR_FIGURES, pair_summary), (tables.QUERY_FIGURES, query_summary), (tables.STEP_FIGURES, step_summary), (tables.INDEX_FIGURES, index_summary),
              (tables.LEVEL_FIGURES, level_summary)]
 
 
@@ -154,11 +173,21 @@ def appendix_of(root):
     return APPENDIX_HEAD + "".join(section(root / figures) for figures, section in tables.SECTIONS if (root / figures).is_file())
 
 
+def guide_of(root):
+    """docs/guides/index.md with a new table; no file when there is no place for it, or no figures."""
+    guide, figures = root / GUIDE, root / tables.INDEX_FIGURES
+    text = guide.read_text(encoding="utf-8") if guide.is_file() and figures.is_file() else ""
+    before, opening, rest = text.partition(GUIDE_TABLE[0])
+    _, closing, after = rest.partition(GUIDE_TABLE[1])
+    return {guide: before + opening + tables.index_table(figures) + closing + after} if opening and closing else {}
+
+
 def main(arguments):
     folders = [argument for argument in arguments if argument != "--check"]
     root = Path(folders[0] if folders else Path(__file__).parent.parent)
     files = charts_of(root)
     files |= {root / PAGE: page_of(root, files), root / APPENDIX: appendix_of(root)}
+    files |= guide_of(root)
     return write_or_check(root, files, "--check" in arguments, "tools/make_tables.py")
 
 

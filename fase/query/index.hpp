@@ -56,7 +56,8 @@ struct IndexStatistics {
 ///
 /// When memory runs out, insert() returns the default id and commit() returns false; nothing has changed then, and the
 /// next call works. move(), erase(), set_awake() and clear() allocate nothing. A query throws std::bad_alloc before it
-/// calls back.
+/// calls back, pairs_with() also between two calls: the first one of its kind after a commit, which builds or updates a
+/// structure of the default, and those whose lists must grow. The next call works. docs/guides/index.md has a table.
 template <class T, class S = query::OnDemand>
 requires broad::Structure<S> || std::same_as<S, query::OnDemand>
 class Index {

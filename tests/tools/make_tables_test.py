@@ -112,7 +112,7 @@ class Charts(Repository):
         root = self.write(row("fase", 2), row("bullet", 7))
         self.assertEqual([path.name for path in make_charts.charts_of(root)], ["step.svg"])
         self.assertEqual(make_charts.charts_of(self.write(row("fase", 2))), {})
-        self.assertEqual(len(make_charts.charts_of(ROOT)), 5)
+        self.assertEqual(len(make_charts.charts_of(ROOT)), 6)
 
     def test_the_same_figures_give_the_same_text_without_a_date(self):
         first, again = make_charts.charts_of(ROOT), make_charts.charts_of(ROOT)
