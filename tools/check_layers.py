@@ -49,7 +49,7 @@ ROOMS = {
 # Rooms whose headers other layers may include: (layer, room): layers.
 SHARED_ROOMS = {
     ("core", "detail"): set(BELOW),
-    ("math", "detail"): {"geometry", "broad", "narrow", "dynamics"},
+    ("math", "detail"): {"geometry", "broad", "narrow", "query", "dynamics"},
     ("geometry", "shapes"): set(BELOW),
     ("broad", "boxes"): {"level"},
     ("broad", "builders"): {"level"},

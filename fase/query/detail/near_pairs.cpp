@@ -10,7 +10,6 @@
 #include <algorithm>
 
 #include "fase/core/detail/prefetch.hpp"
-#include "fase/math/detail/lane.hpp"
 #include "fase/math/detail/wide-inl.hpp"
 #include "fase/query/detail/near_pairs.hpp"
 
@@ -60,10 +59,9 @@ std::size_t keep_wide(const BoxRow* rows, float limit, broad::Pair* pairs, std::
 #else  // Highway 1.0 copies a table to the stack at each Compress
         float square[lanes];
         squares.store(square);
-        box_a[3].store(reinterpret_cast<float*>(a));
-        box_b[3].store(reinterpret_cast<float*>(b));
         for (std::size_t k = 0; k < lanes; ++k) {
-            pairs[kept] = {std::min(a[k], b[k]), std::max(a[k], b[k])};
+            const broad::Proxy proxy_a = rows[a[k]].proxy(), proxy_b = rows[b[k]].proxy();
+            pairs[kept] = {std::min(proxy_a, proxy_b), std::max(proxy_a, proxy_b)};
             kept += square[k] <= limit ? 1 : 0;
         }
 #endif
@@ -82,7 +80,7 @@ namespace fase::query {
 HWY_EXPORT(keep_wide);
 
 std::size_t keep_near_pairs(const BoxRow* rows, float limit, broad::Pair* pairs, std::size_t count) {
-    return HWY_DYNAMIC_DISPATCH(keep_wide)(rows, limit, pairs, count);
+    return count == 0 ? 0 : HWY_DYNAMIC_DISPATCH(keep_wide)(rows, limit, pairs, count);
 }
 
 std::size_t keep_near_pairs_reference(const BoxRow* rows, float limit, broad::Pair* pairs, std::size_t count) {
