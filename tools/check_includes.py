@@ -23,7 +23,7 @@ DECLARES = {
         memory_order_release memory_order_seq_cst""",
     "bit": "bit_cast bit_ceil bit_floor bit_width countl_one countl_zero countr_one countr_zero endian has_single_bit popcount rotl rotr",
     "charconv": "chars_format from_chars from_chars_result to_chars to_chars_result",
-    "chrono": "chrono",
+    "chrono": "chrono micro milli nano",
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot isfinite isinf isnan
         ldexp llround log log10 log2 lround nearbyint nextafter pow remainder rint round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering strong_ordering weak_ordering",

@@ -49,7 +49,7 @@ ROOMS = {
 # Rooms whose headers other layers may include: (layer, room): layers.
 SHARED_ROOMS = {
     ("core", "detail"): set(BELOW),
-    ("math", "detail"): {"geometry", "broad", "narrow", "query", "dynamics"},
+    ("math", "detail"): {"geometry", "broad", "narrow", "query", "dynamics", "world"},
     ("geometry", "shapes"): set(BELOW),
     ("broad", "boxes"): {"level"},
     ("broad", "builders"): {"level"},
