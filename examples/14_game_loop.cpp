@@ -61,7 +61,7 @@ struct Game {
         for (const SensorEvent& entry : world.events().sensors_begun)
             if (entry.visitor.body_user == tag(Kind::Crate)) ++goals;
         for (auto it = health.begin(); it != health.end();)
-            it = it->second > 0 ? std::next(it) : (world.remove_body(it->first), health.erase(it));
+            it = it->second > 0 ? std::next(it) : (void(world.remove_body(it->first)), health.erase(it));
     }
     /// A frame of any length: some steps, then a picture between the last two.
     Pose frame(double seconds, BodyId shown) {

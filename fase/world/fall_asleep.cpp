@@ -49,14 +49,14 @@ void keep_below(const StepContext& context, const BodyContacts& touching, std::u
         });
 }
 
-/// Lists the moving dynamic bodies, which are marked, that touch a dynamic body at rest. O(active contacts).
-void list_beside_rested(const BodyTable& bodies, const ContactTable& contacts, SleepLists& lists) {
+/// Lists the moving dynamic bodies, which are marked, that touch a dynamic body at rest. O(constraints).
+void list_beside_rested(const BodyTable& bodies, const ContactTable& contacts, const Constraints& constraints,
+                        SleepLists& lists) {
     std::vector<std::uint32_t>& list = lists.beside_rested;
     list.clear();
     const auto is_dynamic = [&](std::uint32_t body) { return bodies.traits[body].kind == BodyKind::Dynamic; };
-    for (const std::uint32_t index : contacts.active.values) {
-        const Contact& c = contacts[index];
-        if (!c.touching || c.sensor || bodies.marks[c.body_a] == bodies.marks[c.body_b]) continue;
+    for (const dynamics::Constraint& c : constraints.all) {
+        if (bodies.marks[c.body_a] == bodies.marks[c.body_b] || !contacts[c.owner].touching) continue;
         if (is_dynamic(c.body_a) && is_dynamic(c.body_b)) list.push_back(bodies.marks[c.body_a] ? c.body_a : c.body_b);
     }
     std::sort(list.begin(), list.end());
@@ -67,7 +67,7 @@ void list_beside_rested(const BodyTable& bodies, const ContactTable& contacts, S
 /// Fills kept_awake and its marks: bodies that move, what touches them, and all that these carry. A sleeper thus lies
 /// on sleepers and static bodies only, and touches nothing that moves.
 void find_kept_awake(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
-                     BodyTable& bodies, SleepLists& lists) {
+                     const Constraints& constraints, BodyTable& bodies, SleepLists& lists) {
     const BodyContacts touching{bodies, colliders, contacts};
     std::vector<std::uint32_t>& kept = lists.kept_awake;
     bodies.marks.resize(bodies.traits.size(), 0);
@@ -85,7 +85,7 @@ void find_kept_awake(const StepContext& context, const ColliderTable& colliders,
             ++moving;
         }
     if (moving == bodies.awake.size() && bodies.asleep.bodies.empty()) return;
-    list_beside_rested(bodies, contacts, lists);
+    list_beside_rested(bodies, contacts, constraints, lists);
     for (const std::uint32_t body : lists.beside_rested) {
         keep_below(context, touching, body, lists, bodies.marks);
         for_each_touched(touching, body, [&](const Contact&, std::uint32_t other) {
@@ -135,10 +135,11 @@ bool may_sleep(const Settings& settings, const SleepLists& lists, std::uint32_t 
 
 }  // namespace
 
-void fall_asleep(const StepContext& context, const MotionStates& state, SleepLists& lists) {
+void fall_asleep(const StepContext& context, const Constraints& constraints, const MotionStates& state,
+                 SleepLists& lists) {
     const Settings& settings = context.settings;
     BodyTable& bodies = state.bodies;
-    find_kept_awake(context, state.colliders, state.contacts, bodies, lists);
+    find_kept_awake(context, state.colliders, state.contacts, constraints, bodies, lists);
     measure_islands(settings, bodies, lists);
     std::vector<std::uint32_t> sleepers, woken;
     for (const std::uint32_t body : lists.kept_awake)

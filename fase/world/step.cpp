@@ -96,7 +96,8 @@ void step(WorldState& state, float seconds) {
         collide_sensors(context, bodies, colliders, moved, constraints, contacts);
         publish_events(settings, colliders, constraints, bodies, contacts, state.events);
     });
-    if (seconds > 0) timed(report, Stage::Sleep, [&] { fall_asleep(context, motion_states, state.sleep); });
+    if (seconds > 0)
+        timed(report, Stage::Sleep, [&] { fall_asleep(context, constraints, motion_states, state.sleep); });
     timed(report, Stage::Queries, [&] { update_query_trees(bodies, colliders, broad_phase, query); });
     advance(state.clock, settings, seconds);
     complete_report(state, report);

@@ -73,7 +73,8 @@ void publish_events(const Settings& settings, const ColliderTable& colliders, co
 
 // sleep
 /// Puts to sleep what has been at rest for long enough, and wakes what lies next to what moves.
-void fall_asleep(const StepContext& context, const MotionStates& state, SleepLists& lists);
+void fall_asleep(const StepContext& context, const Constraints& constraints, const MotionStates& state,
+                 SleepLists& lists);
 
 // queries
 /// Updates the query trees when they exist, and frees them when they are unused.
