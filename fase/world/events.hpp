@@ -18,13 +18,14 @@ struct ContactEvent {
     EventCollider a, b;
     friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
 };
-/// Two colliders hit each other faster than Settings::restitution_threshold.
+/// Two colliders hit each other faster than Settings::restitution_threshold. Told once: a hit that begins at the end of
+/// a step, so that the bodies still close, is told by the next step, with the impulses of both.
 struct HitEvent {
     EventCollider a, b;
     Vec3d point;        ///< world, where the surfaces met, at the moment of touch
     Vec3 normal;        ///< unit, from a to b
     float speed = 0;    ///< m/s of approach, before the hit
-    float impulse = 0;  ///< N s along the normal, summed over the contact's points and the step
+    float impulse = 0;  ///< N s along the normal, of all points, until the surfaces no longer close
 };
 /// `visitor` began or stopped overlapping `sensor`.
 struct SensorEvent {

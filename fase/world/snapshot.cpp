@@ -14,7 +14,7 @@ namespace fase {
 namespace {
 
 using dynamics::Contact;
-constexpr std::uint32_t snapshot_version = 3;
+constexpr std::uint32_t snapshot_version = 4;
 constexpr char snapshot_magic[8] = {'F', 'A', 'S', 'E', 'S', 'N', 'A', 'P'};
 constexpr std::size_t head_size = sizeof snapshot_magic + 4 + 8 + 8;
 
@@ -161,6 +161,10 @@ template <class A> void describe(A& a, dynamics::ContactManifold& m) {
 template <class A> void describe(A& a, EventCollider& c) {
     all(a, c.index, c.generation, c.owner, c.body.index, c.body.generation, c.body.owner, c.user, c.body_user);
 }
+template <class A> void describe(A& a, OpenHit& h) {
+    if constexpr (A::saves) all(a, h.a, h.b);
+    all(a, h.a.index, h.b.index, h.point, h.normal, h.speed, h.impulse, h.steps);
+}
 template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
 }
@@ -240,7 +244,7 @@ template <class A> void describe(A& a, WorldState& s) {
         s.colliders.shapes, s.colliders.free_shapes, s.bodies.awake, s.bodies.awake_added, s.bodies.asleep.bodies,
         s.contacts.active.pairs, s.contacts.active.values, s.contacts.resting.pairs, s.contacts.resting.values,
         s.contacts.all, s.contacts.free, s.broad_phase.edited_colliders, s.bodies.to_wake, s.bodies.let_go,
-        s.contacts.to_check, s.broad_phase.removed_any, s.broad_phase.query_all_awake);
+        s.contacts.to_check, s.contacts.open_hits, s.broad_phase.removed_any, s.broad_phase.query_all_awake);
     describe_manifolds(a, s);
     if constexpr (A::saves) describe(a, s.contacts.removed);  // read by events alone
     std::vector<broad::Pair> excluded(s.bodies.exclusions.pairs().begin(), s.bodies.exclusions.pairs().end());

@@ -89,6 +89,72 @@ TEST(Events, a_hit_reports_speed_and_impulse) {
     EXPECT_NEAR(hits[0].point.y, 0, 0.2);
 }
 
+/// A ball without bounce that flies at a wall of which the surface is at x = 0.
+struct BallAtWall {
+    World world = make_world(weightless());
+    BodyId ball;
+    float momentum = 0;
+
+    BallAtWall(float distance, float speed) {
+        add(world, {.kind = BodyKind::Static, .position = {0.5, 0, 0}}, Box{{0.5f, 5, 5}});
+        ball =
+            add(world, {.position = {-0.08 - double(distance), 0, 0}, .linear_velocity = {speed, 0, 0}}, Sphere{0.08f});
+        momentum = state(world, ball).mass * speed;
+    }
+    static Settings weightless() {
+        Settings settings;
+        settings.gravity = {};
+        return settings;
+    }
+};
+
+TEST(Events, a_hit_is_told_once_with_its_whole_impulse_wherever_it_begins_in_a_step) {
+    for (const float speed : {1.0f, 3.0f, 10.0f, 40.0f})
+        for (int i = 0; i < 100; ++i) {
+            BallAtWall scene(0.3f + speed / 60 * 0.013f * static_cast<float>(i), speed);
+            std::vector<HitEvent> hits;
+            for (int k = 0; k < 60; ++k) {
+                ASSERT_TRUE(scene.world.step());
+                hits.insert(hits.end(), scene.world.events().hits.begin(), scene.world.events().hits.end());
+            }
+            ASSERT_EQ(hits.size(), 1u) << speed << " m/s, start " << i;
+            EXPECT_NEAR(hits[0].speed, speed, 0.01f * speed);
+            EXPECT_NEAR(hits[0].impulse, scene.momentum, 0.02f * scene.momentum) << speed << " m/s, start " << i;
+            EXPECT_NEAR(hits[0].point.x, 0, 0.01);
+        }
+}
+
+TEST(Events, a_hit_that_is_not_over_is_told_when_its_body_is_removed_and_after_a_restore) {
+    int open = 0;
+    for (int i = 0; i < 50; ++i) {
+        BallAtWall scene(0.3f + 10.0f / 60 * 0.026f * static_cast<float>(i), 10);
+        const ColliderId collider = scene.world.colliders_of(scene.ball)[0];
+        while (state(scene.world, scene.ball).linear_velocity.x > 9.9f) ASSERT_TRUE(scene.world.step());
+        if (!scene.world.events().hits.empty()) continue;
+        ++open;
+        World restored = make_world(BallAtWall::weightless());
+        ASSERT_TRUE(restored.restore(scene.world.snapshot()));
+        ASSERT_EQ(restored.hash(), scene.world.hash());
+        World without = make_world(BallAtWall::weightless());
+        ASSERT_TRUE(without.restore(scene.world.snapshot()));
+        ASSERT_TRUE(without.remove_body(scene.ball));
+        ASSERT_TRUE(without.step());
+        for (World* world : {&scene.world, &restored}) do
+                ASSERT_TRUE(world->step());
+            while (world->events().hits.empty() && world->steps() < 200);
+        for (World* world : {&scene.world, &restored, &without}) {
+            ASSERT_EQ(world->events().hits.size(), 1u);
+            EXPECT_EQ(world->events().hits[0].b, collider);
+            EXPECT_EQ(world->events().hits[0].b.body, scene.ball);
+            EXPECT_NEAR(world->events().hits[0].speed, 10, 0.1f);
+        }
+        EXPECT_EQ(restored.events().hits[0].impulse, scene.world.events().hits[0].impulse);
+        EXPECT_LT(without.events().hits[0].impulse, scene.momentum) << "of the first step alone";
+        EXPECT_GT(without.events().hits[0].impulse, 0);
+    }
+    EXPECT_GT(open, 5);
+}
+
 TEST(Events, a_sensor_reports_overlaps_and_applies_no_forces) {
     World world = make_world();
     const BodyId gate = add(world, {.kind = BodyKind::Static, .position = {0, 2, 0}}, Box{}, {.sensor = true});

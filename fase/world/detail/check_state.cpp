@@ -216,6 +216,11 @@ bool contacts_are_right(const WorldState& s) {
     pairs.insert(pairs.end(), s.contacts.resting.pairs.begin(), s.contacts.resting.pairs.end());
     std::sort(pairs.begin(), pairs.end());
     if (std::adjacent_find(pairs.begin(), pairs.end()) != pairs.end()) return false;
+    const auto pair_of = [](const OpenHit& hit) { return broad::Pair{hit.a.index, hit.b.index}; };
+    if (!std::ranges::is_sorted(s.contacts.open_hits, {}, pair_of)) return false;
+    for (const OpenHit& hit : s.contacts.open_hits)
+        if (!is_finite(hit.point) || !is_finite(hit.normal) || !std::isfinite(hit.speed) || !std::isfinite(hit.impulse))
+            return false;
     for (const std::uint32_t contact : s.contacts.to_check)
         if (contact >= s.contacts.all.size()) return false;
     if (std::ranges::any_of(s.contacts.free, [&](std::uint32_t free) { return s.contacts[free].capacity != 0; }))

@@ -108,6 +108,11 @@ struct BroadPhase {
     pairs::PairSorter sorter;
 };
 
+/// A hit after which the surfaces still close.
+struct OpenHit : HitEvent {
+    std::uint32_t steps = 0;  ///< over which its impulse was summed
+};
+
 /// All pairs of colliders whose fat boxes overlap: each is in one of two lists and has a contact.
 struct ContactTable {
     pairs::PairList active;              ///< pairs with at least one awake body, ascending; values: contacts
@@ -118,6 +123,7 @@ struct ContactTable {
     /// Resting contacts that the next step collides once: new ones, those of edited colliders, and those of sensors
     /// whose visitor fell asleep.
     std::vector<std::uint32_t> to_check;
+    std::vector<OpenHit> open_hits;      ///< in the order of pairs: the last step did not end them, the next tells them
     std::vector<EventCollider> removed;  ///< colliders removed since the last step, for the ends of their contacts
 
     // Remade.
