@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "fase/core/detail/prefetch.hpp"
-#include "fase/core/no_index.hpp"
 #include "fase/dynamics/solver/rows.hpp"
 
 namespace fase::dynamics {
@@ -96,7 +95,7 @@ void BatchSolver::load(const BatchInput& in, TaskRunner& tasks) {
         colours_[slots_[i].colour].restitution |= manifold(i).restitution > 0;
     }
     prepare_blocks(in.batch.unused_row());
-    list_lanes();
+    list_lanes(in);
     for_each_four(in, tasks, [&](FourLanes& four, const Four& of) {
         const ContactManifold* manifolds[4];
         for (int k = 0; k < 4; ++k) manifolds[k] = of.manifolds[k];
@@ -110,7 +109,7 @@ void BatchSolver::load(const BatchInput& in, TaskRunner& tasks) {
     });
 }
 
-void BatchSolver::list_lanes() {
+void BatchSolver::list_lanes(const BatchInput& in) {
     fours_.clear();
     std::array<std::uint32_t, ConstraintColours::count + 2> first;
     for (std::size_t c = 0; c < colours_.size(); ++c) {
@@ -118,29 +117,33 @@ void BatchSolver::list_lanes() {
         for (ContactBlock& block : colours_[c].blocks)
             for (int lane = 0; lane < block_lanes; lane += 4) fours_.push_back({&block, lane});
     }
-    slot_of_lane_.assign(4 * fours_.size(), no_index);
-    for (std::size_t i = 0; i < slots_.size(); ++i)
-        slot_of_lane_[first[slots_[i].colour] + slots_[i].index] = static_cast<std::uint32_t>(i);
+    users_.assign(4 * fours_.size(), {});
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        const std::uint32_t number = in.numbers[i];
+        users_[first[slots_[i].colour] + slots_[i].index] = {number, in.constraints[number].index, slots_[i].flipped};
+    }
 }
 
 template <class F> void BatchSolver::for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f) {
     parallel_ranges(tasks, fours_.size(), four_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (i + fours_ahead < end)
-                for (std::size_t k = 0; k < 4; ++k)
-                    if (const std::uint32_t slot = slot_of_lane_[4 * (i + fours_ahead) + k]; slot != no_index)
-                        detail::prefetch(in.manifolds[in.constraints[in.numbers[slot]].index]);
+                for (const LaneUser& user : std::span(users_).subspan(4 * (i + fours_ahead), 4))
+                    if (user.number != no_index) {
+                        detail::prefetch(in.manifolds[user.manifold]);
+                        detail::prefetch(in.constraints[user.number]);
+                    }
             Four of;
             for (std::size_t k = 0; k < 4; ++k) {
-                const std::uint32_t slot = slot_of_lane_[4 * i + k];
-                if (slot == no_index) {
+                const LaneUser& user = users_[4 * i + k];
+                if (user.number == no_index) {
                     of.all = false;
                     continue;
                 }
-                of.numbers[k] = in.numbers[slot];
-                of.constraints[k] = &in.constraints[of.numbers[k]];
-                of.manifolds[k] = &in.manifolds[of.constraints[k]->index];
-                of.flipped[k] = slots_[slot].flipped;
+                of.numbers[k] = user.number;
+                of.constraints[k] = &in.constraints[user.number];
+                of.manifolds[k] = &in.manifolds[user.manifold];
+                of.flipped[k] = user.flipped;
             }
             f(fours_[i], of);
         }
@@ -226,8 +229,8 @@ void BatchSolver::store(const BatchInput& in, TaskRunner& tasks) {
 }
 
 std::size_t BatchSolver::bytes() const {
-    std::size_t sum = slots_.capacity() * sizeof(Slot) + fours_.capacity() * sizeof(FourLanes) +
-                      slot_of_lane_.capacity() * sizeof slot_of_lane_[0];
+    std::size_t sum =
+        slots_.capacity() * sizeof(Slot) + fours_.capacity() * sizeof(FourLanes) + users_.capacity() * sizeof(LaneUser);
     for (const Colour& colour : colours_) sum += colour.blocks.capacity() * sizeof(ContactBlock);
     return sum;
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fase/core/no_index.hpp"
 #include "fase/core/tasks.hpp"
 #include "fase/dynamics/solver/batches.hpp"
 #include "fase/dynamics/solver/constraint_colours.hpp"
@@ -64,6 +65,12 @@ private:
         ContactBlock* block;
         int lane;
     };
+    /// The constraint of a lane, and its manifold.
+    struct LaneUser {
+        std::uint32_t number = no_index;  ///< no_index: the lane is unused
+        std::uint32_t manifold = 0;
+        bool flipped = false;
+    };
     /// The constraints of four lanes; null for unused ones.
     struct Four {
         std::uint32_t numbers[4] = {};
@@ -72,7 +79,7 @@ private:
         bool flipped[4] = {};
         bool all = true;  ///< no lane is unused
     };
-    void list_lanes();
+    void list_lanes(const BatchInput& in);
     /// Calls f(FourLanes&, Four) for all blocks, in parallel.
     template <class F> void for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f);
     void load(const BatchInput& in, TaskRunner& tasks);
@@ -84,7 +91,7 @@ private:
     std::array<Colour, ConstraintColours::count + 2> colours_;  // the last two: overflow, two-sided and one-sided
     std::vector<Slot> slots_;                                   // by number of the batch
     std::vector<FourLanes> fours_;                              // of all blocks
-    std::vector<std::uint32_t> slot_of_lane_;                   // four for each of these; no_index: unused
+    std::vector<LaneUser> users_;                               // four for each of these
     std::array<HubBlocks, 2> hubs_;  // of two-sided contacts, and of those with static bodies
     Impacts impacts_;
     BatchCounts counts_;
