@@ -79,6 +79,13 @@ public:
     }
     T* operator->() { return &**this; }
     const T* operator->() const { return &**this; }
+    /// Returns the value, or `other` when there is none.
+    template <class U> [[nodiscard]] T value_or(U&& other) const& {
+        return has_value() ? **this : static_cast<T>(std::forward<U>(other));
+    }
+    template <class U> [[nodiscard]] T value_or(U&& other) && {
+        return has_value() ? *std::move(*this) : static_cast<T>(std::forward<U>(other));
+    }
     const Error& error() const {
         assert(!has_value());
         return *std::get_if<1>(&state_);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fase/math/interpolate.hpp"
+
 namespace fase {
 
 /// Counts how many steps of a fixed length a frame must do. Usage, once per frame:

@@ -41,6 +41,15 @@ TEST(Result, gives_access_to_its_value) {
     EXPECT_EQ(*result, "abcd");
 }
 
+TEST(Result, gives_another_value_when_there_is_none) {
+    EXPECT_EQ(half_of(8).value_or(-1), 4);
+    EXPECT_EQ(half_of(7).value_or(-1), -1);
+    const Result<std::string> text = std::string("abc");
+    EXPECT_EQ(text.value_or("none"), "abc");
+    EXPECT_EQ(Result<std::unique_ptr<int>>(Error{}).value_or(nullptr), nullptr);
+    EXPECT_EQ(*Result<std::unique_ptr<int>>(std::make_unique<int>(5)).value_or(nullptr), 5);
+}
+
 TEST(Result, of_void_is_success_or_an_error) {
     const Result<void> done;
     EXPECT_TRUE(done);
