@@ -8,11 +8,11 @@ namespace fase {
 
 namespace {
 
-Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef& def) {
+Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef& def, const char* where) {
     if (auto checked = check(shape); !checked) return checked;
     if (auto checked = check(def); !checked) return checked;
     if (kind == BodyKind::Dynamic && std::holds_alternative<HalfSpace>(shape) && !def.sensor)
-        return refused("World::add_collider", "a half-space on a dynamic body", "a shape with a mass",
+        return refused(where, "a half-space on a dynamic body", "a shape with a mass",
                        "make the body static or kinematic");
     return {};
 }
@@ -154,7 +154,8 @@ Result<NewBody> World::add_body(const BodyDef& def) {
 Result<NewBody> World::add_body(const BodyDef& def, const Shape& shape, const ColliderDef& collider) {
     return guarded(*state_, "World::add_body", [&]() -> Result<NewBody> {
         WorldState& state = *state_;
-        if (auto checked = check_collider(def.kind, shape, collider); !checked) return checked.error();
+        if (auto checked = check_collider(def.kind, shape, collider, "World::add_body"); !checked)
+            return checked.error();
         if (auto checked = check(def); !checked) return checked.error();
         if (state.stepping) return Error{Status::Busy, "World::add_body", "called from inside a step", "call it after"};
         const Pose pose{def.position, normalized(def.rotation)};
@@ -180,9 +181,10 @@ Result<NewBody> World::add_body(const BodyDef& def, std::span<const ColliderShap
     return guarded(*state_, "World::add_body", [&]() -> Result<NewBody> {
         WorldState& state = *state_;
         for (std::size_t i = 0; i < colliders.size(); ++i)
-            if (auto checked = check_collider(def.kind, colliders[i].shape, colliders[i].def); !checked) {
+            if (auto checked = check_collider(def.kind, colliders[i].shape, colliders[i].def, ""); !checked) {
                 Error error = checked.error();
-                error.where = "World::add_body: colliders[" + std::to_string(i) + "]: " + error.where;
+                error.where = "World::add_body: colliders[" + std::to_string(i) + "]" +
+                              (error.where.empty() ? "" : ": " + error.where);
                 return error;
             }
         if (auto checked = check(def); !checked) return checked.error();
@@ -208,9 +210,10 @@ Result<NewBody> World::add_body(const BodyDef& def, std::span<const ColliderShap
 Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const ColliderDef& def) {
     return guarded(*state_, "add_collider", [&]() -> Result<ColliderId> {
         WorldState& state = *state_;
-        if (!contains(body)) return stale_id("World::add_collider");
+        if (!contains(body)) return invalid_id(*state_, body, "World::add_collider");
         const dynamics::BodyTraits& traits = state.bodies.traits[body.index];
-        if (auto checked = check_collider(traits.kind, shape, def); !checked) return checked.error();
+        if (auto checked = check_collider(traits.kind, shape, def, "World::add_collider"); !checked)
+            return checked.error();
         BodyEdit edit = fase::edit_of(state, body.index);
         edit.added = &shape;
         edit.added_def = &def;
@@ -228,7 +231,7 @@ Result<ColliderId> World::add_collider(BodyId body, const Shape& shape, const Co
 Result<void> World::remove_collider(ColliderId collider) {
     return guarded(*state_, "remove_collider", [&]() -> Result<void> {
         WorldState& state = *state_;
-        if (!contains(collider)) return stale_id("World::remove_collider");
+        if (!contains(collider)) return invalid_id(*state_, collider, "World::remove_collider");
         const std::uint32_t body = state.colliders[collider.index].body;
         BodyEdit edit = fase::edit_of(state, body);
         edit.removed = collider.index;
@@ -248,7 +251,7 @@ Result<void> World::remove_collider(ColliderId collider) {
 
 Result<void> World::remove_body(BodyId body) {
     return guarded(*state_, "remove_body", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::remove_body");
+        if (!contains(body)) return invalid_id(*state_, body, "World::remove_body");
         WorldState& state = *state_;
         std::size_t colliders = 0;
         for (std::uint32_t c = state.bodies.traits[body.index].first_collider; c != no_index;

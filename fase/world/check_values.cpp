@@ -7,44 +7,59 @@
 #include "fase/world/detail/edit.hpp"
 
 namespace fase {
+namespace {
+
+constexpr const char* axis_names[] = {".x", ".y", ".z"};
+
+}  // namespace
 
 Result<void> check_number(float value, float min, float max, const std::string& where) {
     if (value >= min && value <= max) return {};
-    return refused(where, detail::text_of(value), detail::text_of(min) + " to " + detail::text_of(max));
+    return refused(where, detail::found_text(value), detail::text_of(min) + " to " + detail::text_of(max));
 }
 
 Result<void> check_vector(Vec3 value, float max, const std::string& where) {
     for (int axis = 0; axis < 3; ++axis)
-        if (auto checked = check_number(value[axis], -max, max, where); !checked) return checked;
+        if (!(value[axis] >= -max && value[axis] <= max))
+            return check_number(value[axis], -max, max, where + axis_names[axis]);
     return {};
 }
 
-bool is_in_world(Vec3d p) {
-    const auto within = [](double v) { return v >= -limits::coordinate && v <= limits::coordinate; };
-    return within(p.x) && within(p.y) && within(p.z);
+namespace {
+
+bool is_coordinate(double v) { return v >= -limits::coordinate && v <= limits::coordinate; }
+
+/// Checks the length of a velocity.
+Result<void> check_speed(Vec3 velocity, float max, const std::string& where, const char* unit, const char* expected) {
+    const double squared = length_squared(to_double(velocity));
+    if (squared <= double(max) * double(max)) return {};
+    for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(velocity[axis]))
+            return refused(where + axis_names[axis], detail::found_text(velocity[axis]), expected);
+    return refused(where, detail::text_of(static_cast<float>(std::sqrt(squared))) + unit, expected);
 }
 
+}  // namespace
+
+bool is_in_world(Vec3d p) { return is_coordinate(p.x) && is_coordinate(p.y) && is_coordinate(p.z); }
+
 Result<void> check_position(Vec3d p, const std::string& where) {
-    if (is_in_world(p)) return {};
-    return refused(where, "a coordinate that is not finite or beyond 1e7 m", "-1e7 to 1e7 m");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!is_coordinate(p[axis]))
+            return refused(where + axis_names[axis], detail::found_text(p[axis]), "-1e7 to 1e7 m");
+    return {};
 }
 
 Result<Quat> check_rotation(Quat q, const std::string& where) {
     const float length = std::sqrt(length_squared(q));
     if (!is_finite(q) || !(length > 0.99f && length < 1.01f))
-        return refused(where, "a quaternion of length " + detail::text_of(length), "length 1", "normalise it");
+        return refused(where, "a quaternion of length " + detail::found_text(length), "length 1", "normalise it");
     return normalized(q);
 }
 
 Result<void> check_velocity(Vec3 linear, Vec3 angular, const std::string& where) {
-    const auto within = [](Vec3 v, float max) { return length_squared(to_double(v)) <= double(max) * double(max); };
-    if (!within(linear, limits::speed))
-        return refused(where + "linear_velocity",
-                       detail::text_of(std::sqrt(length_squared(to_double(linear)))) + " m/s", "at most 1e7 m/s");
-    if (!within(angular, limits::spin))
-        return refused(where + "angular_velocity",
-                       detail::text_of(std::sqrt(length_squared(to_double(angular)))) + " rad/s", "at most 1e6 rad/s");
-    return {};
+    if (auto r = check_speed(linear, limits::speed, where + "linear_velocity", " m/s", "at most 1e7 m/s"); !r) return r;
+    return check_speed(angular, limits::spin, where + "angular_velocity", " rad/s", "at most 1e6 rad/s");
 }
 
 Result<void> check_combined_mass(const MassProperties& mass, Vec3 moments, const std::string& where) {
@@ -60,7 +75,7 @@ Result<void> check_combined_mass(const MassProperties& mass, Vec3 moments, const
 Result<void> check_mass(const MassProperties& mass, const std::string& where) {
     if (auto checked = check(mass); !checked) {
         Error error = checked.error();
-        error.where = where + "mass: " + error.where;
+        error.where = where + (error.where == "mass" ? "mass" : "mass: " + error.where);
         return error;
     }
     return check_combined_mass(mass, principal(mass.inertia).moments, where);

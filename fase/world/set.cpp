@@ -13,7 +13,7 @@ Result<void> check_forces(const dynamics::BodyForces& sum, const std::string& wh
     if (auto checked = check_vector(sum.force, limits::force, where + ": sum of forces"); !checked) return checked;
     return check_vector(sum.torque, limits::torque, where + ": sum of torques");
 }
-Error not_dynamic(const char* where) {
+Error not_dynamic(const std::string& where) {
     return refused(where, "a static or kinematic body", "a dynamic one", "give kinematic bodies a velocity instead");
 }
 Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::BodyMotion& motion, Vec3 torque) {
@@ -22,6 +22,55 @@ Vec3 inverse_inertia_times(const dynamics::BodyTraits& traits, const dynamics::B
     };
     const Vec3 local = rotate_back(motion.rotation, free(torque));
     return free(rotate(motion.rotation, multiply(local, traits.inverse_moments)));
+}
+
+/// Sets the velocities of a body that exists; `where` names the call.
+Result<void> set_velocity(WorldState& state, std::uint32_t body, Vec3 linear, Vec3 angular, const char* where) {
+    if (auto checked = check_velocity(linear, angular, where); !checked) return checked;
+    reserve_wakes(state, 1);
+    dynamics::BodyMotion& motion = state.bodies.motion[body];
+    motion.linear_velocity = linear;
+    motion.angular_velocity = angular;
+    disturb(state.bodies, state.settings, body);
+    return {};
+}
+
+/// Adds a force on a body that exists; `where` names the call.
+Result<void> add_force(WorldState& state, std::uint32_t body, Vec3 newtons, Vec3d point, const std::string& where) {
+    if (auto checked = check_vector(newtons, limits::force, where + ": newtons"); !checked) return checked;
+    if (auto checked = check_position(point, where + ": point"); !checked) return checked;
+    if (state.bodies.traits[body].kind != BodyKind::Dynamic) return not_dynamic(where);
+    if (newtons == Vec3{}) return {};
+    const Vec3 arm = to_float(point - state.bodies.motion[body].position);
+    dynamics::BodyForces sum = state.bodies.forces[body];
+    sum.force += newtons;
+    sum.torque += cross(arm, newtons);
+    if (auto checked = check_forces(sum, where); !checked) return checked;
+    reserve_wakes(state, 1);
+    state.bodies.forces[body] = sum;
+    disturb(state.bodies, state.settings, body);
+    return {};
+}
+
+/// Applies an impulse to a body that exists; `where` names the call.
+Result<void> add_impulse(WorldState& state, std::uint32_t body, Vec3 newton_seconds, Vec3d point,
+                         const std::string& where) {
+    if (auto checked = check_vector(newton_seconds, limits::force, where + ": newton_seconds"); !checked)
+        return checked;
+    if (auto checked = check_position(point, where + ": point"); !checked) return checked;
+    const dynamics::BodyTraits& traits = state.bodies.traits[body];
+    if (traits.kind != BodyKind::Dynamic) return not_dynamic(where);
+    dynamics::BodyMotion& motion = state.bodies.motion[body];
+    const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
+    const Vec3 angular =
+        motion.angular_velocity +
+        inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
+    if (auto checked = check_velocity(linear, angular, where + ": "); !checked) return checked;
+    reserve_wakes(state, 1);
+    motion.linear_velocity = linear;
+    motion.angular_velocity = angular;
+    disturb(state.bodies, state.settings, body);
+    return {};
 }
 
 /// The next step looks for pairs of two bodies anew, from the side of the one that does not hold a whole world.
@@ -83,7 +132,7 @@ Result<void> World::set_settings(const Settings& settings) {
 
 Result<void> World::set_pose(BodyId body, const Pose& pose) {
     return guarded(*state_, "set_pose", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_pose");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_pose");
         if (auto checked = check_position(pose.position, "World::set_pose: position"); !checked) return checked;
         const auto rotation = check_rotation(pose.rotation, "World::set_pose: rotation");
         if (!rotation) return rotation.error();
@@ -101,27 +150,20 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
 
 Result<void> World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
     return guarded(*state_, "set_velocity", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_velocity");
-        if (auto checked = check_velocity(linear, angular, "World::set_velocity: "); !checked) return checked;
-        const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-        if (traits.kind == BodyKind::Static)
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_velocity");
+        if (state_->bodies.traits[body.index].kind == BodyKind::Static)
             return refused("World::set_velocity", "a static body", "a dynamic or kinematic one", "set its kind first");
-        reserve_wakes(*state_, 1);
-        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-        motion.linear_velocity = linear;
-        motion.angular_velocity = angular;
-        disturb(state_->bodies, state_->settings, body.index);
-        return {};
+        return fase::set_velocity(*state_, body.index, linear, angular, "World::set_velocity: ");
     });
 }
 
 Result<void> World::move_kinematic(BodyId body, const Pose& target, float seconds) {
     return guarded(*state_, "move_kinematic", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::move_kinematic");
+        if (!contains(body)) return invalid_id(*state_, body, "World::move_kinematic");
         if (state_->bodies.traits[body.index].kind != BodyKind::Kinematic)
             return refused("World::move_kinematic", "a body that is not kinematic", "a kinematic one");
         if (!(seconds > 0 && seconds <= 1))
-            return refused("World::move_kinematic: seconds", detail::text_of(seconds), "above 0, at most 1");
+            return refused("World::move_kinematic: seconds", detail::found_text(seconds), "above 0, at most 1");
         if (auto checked = check_position(target.position, "World::move_kinematic: position"); !checked) return checked;
         const auto rotation = check_rotation(target.rotation, "World::move_kinematic: rotation");
         if (!rotation) return rotation.error();
@@ -147,15 +189,16 @@ Result<void> World::move_kinematic(BodyId body, const Pose& target, float second
         // A target read from the body itself differs by rounding. That is no motion, and must keep nobody awake.
         constexpr float rounding = 1e-6f;  // metres and radians; what is left out adds up in the next target
         const Vec3 way = to_float(placed.position - motion.position);
-        if (length_squared(way) < rounding * rounding && angle < rounding) return set_velocity(body, {}, {});
-        const Vec3 angular = sine > 0 ? turn.vector() * (angle / (sine * seconds)) : Vec3{};
-        return set_velocity(body, way * (1 / seconds), angular);
+        const bool rests = length_squared(way) < rounding * rounding && angle < rounding;
+        const Vec3 linear = rests ? Vec3{} : way * (1 / seconds);
+        const Vec3 angular = rests || !(sine > 0) ? Vec3{} : turn.vector() * (angle / (sine * seconds));
+        return fase::set_velocity(*state_, body.index, linear, angular, "World::move_kinematic: ");
     });
 }
 
 Result<void> World::set_kind(BodyId body, BodyKind kind) {
     return guarded(*state_, "set_kind", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_kind");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_kind");
         if (kind > BodyKind::Dynamic) return refused("World::set_kind", "an unknown kind", "a BodyKind");
         WorldState& state = *state_;
         dynamics::BodyTraits& traits = state.bodies.traits[body.index];
@@ -186,7 +229,7 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
 
 Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& mass) {
     return guarded(*state_, "set_mass", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_mass");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_mass");
         if (mass)
             if (auto checked = check_mass(*mass, "World::set_mass: "); !checked) return checked;
         dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
@@ -209,7 +252,7 @@ Result<void> World::set_mass(BodyId body, const std::optional<MassProperties>& m
 
 Result<void> World::set_damping(BodyId body, float linear, float angular) {
     return guarded(*state_, "set_damping", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_damping");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_damping");
         if (auto r = check_number(linear, 0, limits::damping, "World::set_damping: linear"); !r) return r;
         if (auto r = check_number(angular, 0, limits::damping, "World::set_damping: angular"); !r) return r;
         reserve_wakes(*state_, 1);
@@ -222,7 +265,7 @@ Result<void> World::set_damping(BodyId body, float linear, float angular) {
 
 Result<void> World::set_gravity_scale(BodyId body, float scale) {
     return guarded(*state_, "gravity_scale", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_gravity_scale");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_gravity_scale");
         if (auto r = check_number(scale, -limits::gravity_scale, limits::gravity_scale, "World::set_gravity_scale"); !r)
             return r;
         reserve_wakes(*state_, 1);
@@ -234,7 +277,7 @@ Result<void> World::set_gravity_scale(BodyId body, float scale) {
 
 Result<void> World::set_locks(BodyId body, AxisLocks locks) {
     return guarded(*state_, "set_locks", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_locks");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_locks");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].locks = bits_of(locks);
         disturb(state_->bodies, state_->settings, body.index);
@@ -244,7 +287,7 @@ Result<void> World::set_locks(BodyId body, AxisLocks locks) {
 
 Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
     return guarded(*state_, "set_can_sleep", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::set_can_sleep");
+        if (!contains(body)) return invalid_id(*state_, body, "World::set_can_sleep");
         reserve_wakes(*state_, 1);
         state_->bodies.traits[body.index].can_sleep = can_sleep;
         if (!can_sleep) disturb(state_->bodies, state_->settings, body.index);
@@ -254,7 +297,7 @@ Result<void> World::set_can_sleep(BodyId body, bool can_sleep) {
 
 Result<void> World::wake(BodyId body) {
     return guarded(*state_, "World::wake", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::wake");
+        if (!contains(body)) return invalid_id(*state_, body, "World::wake");
         reserve_wakes(*state_, 1);
         disturb(state_->bodies, state_->settings, body.index);
         return {};
@@ -263,7 +306,7 @@ Result<void> World::wake(BodyId body) {
 
 Result<void> World::set_material(ColliderId collider, const Material& material) {
     return guarded(*state_, "set_material", [&]() -> Result<void> {
-        if (!contains(collider)) return stale_id("World::set_material");
+        if (!contains(collider)) return invalid_id(*state_, collider, "World::set_material");
         if (auto checked = check(material); !checked) return checked;
         WorldState& state = *state_;
         std::size_t contacts = 0;
@@ -289,7 +332,7 @@ Result<void> World::set_material(ColliderId collider, const Material& material) 
 
 Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter& filter) {
     return guarded(*state_, "set_filter", [&]() -> Result<void> {
-        if (!contains(collider)) return stale_id("World::set_filter");
+        if (!contains(collider)) return invalid_id(*state_, collider, "World::set_filter");
         reserve_wakes(*state_, 1);
         state_->colliders[collider.index].filter = filter;
         update_box(*state_, collider.index);
@@ -300,7 +343,8 @@ Result<void> World::set_filter(ColliderId collider, const pairs::CollisionFilter
 
 Result<void> World::exclude_pair(BodyId a, BodyId b) {
     return guarded(*state_, "exclude_pair", [&]() -> Result<void> {
-        if (!contains(a) || !contains(b)) return stale_id("World::exclude_pair");
+        if (!contains(a)) return invalid_id(*state_, a, "World::exclude_pair: a");
+        if (!contains(b)) return invalid_id(*state_, b, "World::exclude_pair: b");
         if (a == b) return refused("World::exclude_pair", "the same body twice", "two bodies");
         reserve_wakes(*state_, 2);
         if (!state_->bodies.exclusions.add(a.index, b.index)) return {};
@@ -313,7 +357,8 @@ Result<void> World::exclude_pair(BodyId a, BodyId b) {
 
 Result<void> World::include_pair(BodyId a, BodyId b) {
     return guarded(*state_, "include_pair", [&]() -> Result<void> {
-        if (!contains(a) || !contains(b)) return stale_id("World::include_pair");
+        if (!contains(a)) return invalid_id(*state_, a, "World::include_pair: a");
+        if (!contains(b)) return invalid_id(*state_, b, "World::include_pair: b");
         reserve_wakes(*state_, 2);
         if (!state_->bodies.exclusions.remove(a.index, b.index)) return {};
         update_pairs_between(*state_, a.index, b.index);
@@ -325,35 +370,24 @@ Result<void> World::include_pair(BodyId a, BodyId b) {
 
 Result<void> World::apply_force(BodyId body, Vec3 newtons) {
     return guarded(*state_, "apply_force", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_force");
-        return apply_force_at(body, newtons, state_->bodies.motion[body.index].position);
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_force");
+        const Vec3d centre = state_->bodies.motion[body.index].position;
+        return add_force(*state_, body.index, newtons, centre, "World::apply_force");
     });
 }
 
 Result<void> World::apply_force_at(BodyId body, Vec3 newtons, Vec3d point) {
-    return guarded(*state_, "apply_force", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_force");
-        if (auto checked = check_vector(newtons, limits::force, "World::apply_force: newtons"); !checked)
-            return checked;
-        if (auto checked = check_position(point, "World::apply_force: point"); !checked) return checked;
-        if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_force");
-        if (newtons == Vec3{}) return {};
-        const Vec3 arm = to_float(point - state_->bodies.motion[body.index].position);
-        dynamics::BodyForces sum = state_->bodies.forces[body.index];
-        sum.force += newtons;
-        sum.torque += cross(arm, newtons);
-        if (auto checked = check_forces(sum, "World::apply_force"); !checked) return checked;
-        reserve_wakes(*state_, 1);
-        state_->bodies.forces[body.index] = sum;
-        disturb(state_->bodies, state_->settings, body.index);
-        return {};
+    return guarded(*state_, "apply_force_at", [&]() -> Result<void> {
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_force_at");
+        return add_force(*state_, body.index, newtons, point, "World::apply_force_at");
     });
 }
 
 Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
     return guarded(*state_, "apply_torque", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_torque");
-        if (auto checked = check_vector(newton_metres, limits::torque, "World::apply_torque"); !checked) return checked;
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_torque");
+        if (auto checked = check_vector(newton_metres, limits::torque, "World::apply_torque: newton_metres"); !checked)
+            return checked;
         if (state_->bodies.traits[body.index].kind != BodyKind::Dynamic) return not_dynamic("World::apply_torque");
         if (newton_metres == Vec3{}) return {};
         dynamics::BodyForces sum = state_->bodies.forces[body.index];
@@ -368,38 +402,25 @@ Result<void> World::apply_torque(BodyId body, Vec3 newton_metres) {
 
 Result<void> World::apply_impulse(BodyId body, Vec3 newton_seconds) {
     return guarded(*state_, "apply_impulse", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_impulse");
-        return apply_impulse_at(body, newton_seconds, state_->bodies.motion[body.index].position);
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_impulse");
+        const Vec3d centre = state_->bodies.motion[body.index].position;
+        return add_impulse(*state_, body.index, newton_seconds, centre, "World::apply_impulse");
     });
 }
 
 Result<void> World::apply_impulse_at(BodyId body, Vec3 newton_seconds, Vec3d point) {
     return guarded(*state_, "apply_impulse", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_impulse");
-        if (auto checked = check_vector(newton_seconds, limits::force, "World::apply_impulse: newton_seconds");
-            !checked)
-            return checked;
-        if (auto checked = check_position(point, "World::apply_impulse: point"); !checked) return checked;
-        const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
-        if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_impulse");
-        dynamics::BodyMotion& motion = state_->bodies.motion[body.index];
-        const Vec3 linear = motion.linear_velocity + newton_seconds * traits.inverse_mass;
-        const Vec3 angular =
-            motion.angular_velocity +
-            inverse_inertia_times(traits, motion, cross(to_float(point - motion.position), newton_seconds));
-        if (auto checked = check_velocity(linear, angular, "World::apply_impulse: "); !checked) return checked;
-        reserve_wakes(*state_, 1);
-        motion.linear_velocity = linear;
-        motion.angular_velocity = angular;
-        disturb(state_->bodies, state_->settings, body.index);
-        return {};
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_impulse_at");
+        return add_impulse(*state_, body.index, newton_seconds, point, "World::apply_impulse_at");
     });
 }
 
 Result<void> World::apply_angular_impulse(BodyId body, Vec3 newton_metre_seconds) {
     return guarded(*state_, "angular_impulse", [&]() -> Result<void> {
-        if (!contains(body)) return stale_id("World::apply_angular_impulse");
-        if (auto checked = check_vector(newton_metre_seconds, limits::torque, "World::apply_angular_impulse"); !checked)
+        if (!contains(body)) return invalid_id(*state_, body, "World::apply_angular_impulse");
+        if (auto checked = check_vector(newton_metre_seconds, limits::torque,
+                                        "World::apply_angular_impulse: newton_metre_seconds");
+            !checked)
             return checked;
         const dynamics::BodyTraits& traits = state_->bodies.traits[body.index];
         if (traits.kind != BodyKind::Dynamic) return not_dynamic("World::apply_angular_impulse");

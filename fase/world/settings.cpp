@@ -17,9 +17,12 @@ Error refused(const char* field, const std::string& found, const std::string& ex
 Result<void> check(const Settings& s) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(std::fabs(s.gravity[axis]) <= limits::acceleration))
-            return refused("gravity", detail::text_of(s.gravity[axis]), "-1e6 to 1e6 m/s²");
+            return refused(axis == 0   ? "gravity.x"
+                           : axis == 1 ? "gravity.y"
+                                       : "gravity.z",
+                           detail::found_text(s.gravity[axis]), "-1e6 to 1e6 m/s²");
     if (!(s.time_step > 0 && s.time_step <= 1))
-        return refused("time_step", detail::text_of(s.time_step), "above 0, at most 1");
+        return refused("time_step", detail::found_text(s.time_step), "above 0, at most 1");
     if (s.sub_steps < 1 || s.sub_steps > 64) return refused("sub_steps", std::to_string(s.sub_steps), "1 to 64");
     if (s.max_pairs < 0) return refused("max_pairs", std::to_string(s.max_pairs), "0 or more");
     const struct {
@@ -44,7 +47,7 @@ Result<void> check(const Settings& s) {
     };
     for (const auto& range : ranges)
         if (!(range.value >= range.min && range.value <= range.max))
-            return refused(range.field, detail::text_of(range.value),
+            return refused(range.field, detail::found_text(range.value),
                            detail::text_of(range.min) + " to " + detail::text_of(range.max));
     return {};
 }

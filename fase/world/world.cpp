@@ -65,7 +65,7 @@ Result<StepReport> World::step(float seconds) {
     return guarded(*state_, "World::step", [&]() -> Result<StepReport> {
         if (!(seconds >= 0 && seconds <= 1))
             return Error{Status::BadArgument, "World::step: seconds",
-                         "found " + detail::text_of(seconds) + "; expected 0 to 1",
+                         "found " + detail::found_text(seconds) + "; expected 0 to 1",
                          "take several steps for longer times"};
         if (state_->stepping)
             return Error{Status::Busy, "World::step", "called from inside a step", "wait until the step has returned"};
@@ -157,14 +157,14 @@ template <class F> void for_each_manifold(const WorldState& state, const F& f) {
 
 Result<BodyState> World::body(BodyId body) const {
     return guarded(*state_, "World::body", [&]() -> Result<BodyState> {
-        if (!contains(body)) return stale_id("World::body");
+        if (!contains(body)) return invalid_id(*state_, body, "World::body");
         return state_of(*state_, body);
     });
 }
 
 Result<ColliderState> World::collider(ColliderId collider) const {
     return guarded(*state_, "World::collider", [&]() -> Result<ColliderState> {
-        if (!contains(collider)) return stale_id("World::collider");
+        if (!contains(collider)) return invalid_id(*state_, collider, "World::collider");
         const Collider& c = state_->colliders[collider.index];
         ColliderState out;
         out.id = collider;

@@ -126,6 +126,54 @@ TEST_F(Refusals, ids_that_are_stale_foreign_or_random) {
     expect_refused(world.remove_collider(stale), Status::BadHandle, "remove_collider");
 }
 
+TEST_F(Refusals, texts_name_the_call_the_axis_and_the_value) {
+    const auto text = [](const auto& result) { return result ? std::string("no error") : result.error().text(); };
+    EXPECT_EQ(text(world.add_body({.position = {0, nan_d, 0}})),
+              "BodyDef.position.y: found nan, not a finite number; expected -1e7 to 1e7 m");
+    EXPECT_EQ(text(world.set_pose(box, {{0, 0, -2e7}, {}})),
+              "World::set_pose: position.z: found -20000000; expected -1e7 to 1e7 m");
+    EXPECT_EQ(text(world.set_velocity(box, {0, nan, 0}, {})),
+              "World::set_velocity: linear_velocity.y: found nan, not a finite number; expected at most 1e7 m/s");
+    EXPECT_EQ(text(world.set_velocity(box, {}, {0, 0, -inf})),
+              "World::set_velocity: angular_velocity.z: found -inf, not a finite number; expected at most 1e6 rad/s");
+    EXPECT_EQ(text(world.set_velocity(box, {3e7f, 4e7f, 0}, {})),
+              "World::set_velocity: linear_velocity: found 50000000 m/s; expected at most 1e7 m/s");
+    EXPECT_EQ(text(world.apply_impulse_at(box, {1, 0, 0}, {nan_d, 0, 0})),
+              "World::apply_impulse_at: point.x: found nan, not a finite number; expected -1e7 to 1e7 m");
+    EXPECT_TRUE(text(world.apply_force_at(box, {0, 0, nan}, {})).starts_with("World::apply_force_at: newtons.z: "));
+    EXPECT_TRUE(text(world.apply_torque(box, {0, nan, 0})).starts_with("World::apply_torque: newton_metres.y: "));
+    EXPECT_TRUE(text(world.add_body({}, HalfSpace{})).starts_with("World::add_body: found a half-space"));
+    EXPECT_TRUE(text(world.add_collider(box, HalfSpace{})).starts_with("World::add_collider: found a half-space"));
+    const std::vector<ColliderShape> parts{{Sphere{}}, {HalfSpace{}}};
+    EXPECT_TRUE(text(world.add_body({}, parts)).starts_with("World::add_body: colliders[1]: found a half-space"));
+    EXPECT_TRUE(text(world.set_mass(box, MassProperties{0, {}, Mat3::identity()}))
+                    .starts_with("World::set_mass: mass: found 0; expected"));
+    Settings settings;
+    settings.gravity.y = nan;
+    EXPECT_EQ(text(world.set_settings(settings)),
+              "Settings.gravity.y: found nan, not a finite number; expected -1e6 to 1e6 m/s²");
+    const BodyId lift = add(world, {.kind = BodyKind::Kinematic, .position = {9, 5, 0}}, Box{});
+    EXPECT_TRUE(text(world.move_kinematic(lift, {{1e6, 5, 0}, {}}, 0.001f))
+                    .starts_with("World::move_kinematic: linear_velocity: found "));
+}
+
+TEST_F(Refusals, texts_tell_why_an_id_is_not_valid) {
+    World other = make_world();
+    add_ground(other);
+    const BodyId foreign = add(other, {}, Sphere{});
+    const auto [removed, part] = *world.add_body({.position = {50, 0, 0}}, Sphere{});
+    ASSERT_TRUE(world.remove_body(removed));
+    const auto text = [&](BodyId id) { return world.wake(id).error().text(); };
+    EXPECT_TRUE(text({}).starts_with("World::wake: found the default id, which names no body; "));
+    EXPECT_TRUE(text(foreign).starts_with("World::wake: found the id of a body of another world (index 1); "));
+    EXPECT_TRUE(text(removed).starts_with("World::wake: found the id of a body that was removed (index 2); "));
+    for (const BodyId never : {BodyId{7, 1, box.owner}, BodyId{box.index, 2, box.owner}, BodyId{0, 0, box.owner}})
+        EXPECT_TRUE(text(never).starts_with("World::wake: found an id that this world never issued (index "));
+    EXPECT_TRUE(world.remove_collider(part).error().text().starts_with(
+        "World::remove_collider: found the id of a collider that was removed (index 2); "));
+    EXPECT_TRUE(world.exclude_pair(box, removed).error().text().starts_with("World::exclude_pair: b: found the id"));
+}
+
 TEST_F(Refusals, settings_out_of_range) {
     const auto with = [&](auto change, const char* field) {
         Settings settings = world.settings();

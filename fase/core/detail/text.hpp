@@ -24,6 +24,12 @@ template <std::integral T> [[nodiscard]] std::string text_of(T value) { return s
 [[nodiscard]] inline std::string text_of(std::string_view value) { return std::string(value); }
 [[nodiscard]] inline std::string text_of(const char* value) { return value; }
 
+/// What an error says of a number: its text_of(); "nan, not a finite number" for those that are not finite.
+template <std::floating_point T> [[nodiscard]] std::string found_text(T value) {
+    if (std::isnan(value)) return "nan, not a finite number";  // without the sign, which differs between machines
+    return std::isfinite(value) ? text_of(value) : text_of(value) + ", not a finite number";
+}
+
 /// `value` with two significant digits.
 [[nodiscard]] inline std::string rounded_text_of(double value) {
     char buffer[64];

@@ -9,9 +9,35 @@
 
 namespace fase {
 
-Error stale_id(const char* where) {
-    return {Status::BadHandle, where, "found an id that is stale or of another world",
-            "an id is valid until its body or collider is removed, and only in its own world"};
+namespace {
+
+/// `noun`: what the id names.
+template <class Tag>
+Error invalid_id(const IdPool<Tag>& ids, Id<Tag> id, const char* where, const std::string& noun, const char* source) {
+    const std::string place = " (index " + std::to_string(id.index) + ")";
+    if (id == Id<Tag>{})
+        return {Status::BadHandle, where, "found the default id, which names no " + noun,
+                std::string("use the id that ") + source + " returned"};
+    if (id.owner != ids.owner())
+        return {Status::BadHandle, where, "found the id of a " + noun + " of another world" + place,
+                "a world that restored a snapshot knows the ids of the world that took it"};
+    const bool was_issued =
+        id.index < ids.newest().size() && id.generation > 0 && id.generation <= ids.newest()[id.index];
+    if (!was_issued)
+        return {Status::BadHandle, where, "found an id that this world never issued" + place,
+                std::string("use the id that ") + source + " returned"};
+    return {Status::BadHandle, where, "found the id of a " + noun + " that was removed" + place,
+            "World::contains() tells whether an id is valid"};
+}
+
+}  // namespace
+
+Error invalid_id(const WorldState& state, BodyId id, const char* where) {
+    return invalid_id(state.bodies.ids, id, where, "body", "add_body()");
+}
+
+Error invalid_id(const WorldState& state, ColliderId id, const char* where) {
+    return invalid_id(state.colliders.ids, id, where, "collider", "add_body() or add_collider()");
 }
 
 Error refused(std::string where, std::string found, std::string expected, std::string remedy) {

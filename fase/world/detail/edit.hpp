@@ -14,8 +14,10 @@
 
 namespace fase {
 
-/// Returns the Error for an id that is stale or of another world.
-[[nodiscard]] Error stale_id(const char* where);
+/// Returns the Error for an id that the world does not contain: the default one, one of another world, one that was
+/// never issued, or one whose body or collider was removed.
+[[nodiscard]] Error invalid_id(const WorldState& state, BodyId id, const char* where);
+[[nodiscard]] Error invalid_id(const WorldState& state, ColliderId id, const char* where);
 /// Returns a BadArgument error: "where: found …; expected …".
 [[nodiscard]] Error refused(std::string where, std::string found, std::string expected, std::string remedy = "");
 /// Returns the Error for a world whose last step ran out of memory.

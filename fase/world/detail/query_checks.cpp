@@ -6,19 +6,19 @@ namespace fase::world_queries {
 
 Result<void> check_direction(Vec3 direction, const std::string& where) {
     if (is_direction(direction)) return {};
-    return refused(where, "a vector of length " + detail::text_of(length(to_double(direction))), "length 1",
+    return refused(where, "a vector of length " + detail::found_text(length(to_double(direction))), "length 1",
                    "normalise it");
 }
 
 Result<void> check_length(float length, const std::string& where) {
     if (length >= 0) return {};
-    return refused(where, detail::text_of(length), "0 or more metres");
+    return refused(where, detail::found_text(length), "0 or more metres");
 }
 
 Error invalid_ray(const Ray& ray, const std::string& where) {
     if (auto r = check_position(ray.origin, where + ".origin"); !r) return r.error();
     if (auto r = check_direction(ray.direction, where + ".direction"); !r) return r.error();
-    return refused(where + ".length", detail::text_of(ray.length), "0 or more metres");
+    return refused(where + ".length", detail::found_text(ray.length), "0 or more metres");
 }
 
 Result<void> check_placed(const Shape& shape, const Pose& pose, const std::string& where) {
