@@ -85,7 +85,10 @@ public:
     /// Teleports a body, without collisions on the path. Works for static bodies too; bodies that touched them wake.
     Result<void> set_pose(BodyId body, const Pose& pose);
     Result<void> set_velocity(BodyId body, Vec3 linear, Vec3 angular);
-    /// Sets the velocities of a kinematic body so that a step of `seconds` moves it to `target`.
+    /// Sets the velocities of a kinematic body so that a step of `seconds` moves it to `target`. They stay: call it
+    /// before every step, or set them to 0 at the end, or the body moves on. A target that is farther than a step goes
+    /// at Settings::max_linear_speed or max_angular_speed is not reached: the step clamps the speed and counts the body
+    /// in StepReport::speed_clamped. Nothing stops the body on its way, walls neither.
     Result<void> move_kinematic(BodyId body, const Pose& target, float seconds);
     Result<void> set_kind(BodyId body, BodyKind kind);
     /// Sets the mass properties; nullopt returns to the sum over the colliders.

@@ -92,6 +92,19 @@ TEST(Limits, hold_before_anything_moves) {
     }
 }
 
+TEST(Limits, a_kinematic_target_too_far_for_a_step_takes_several) {
+    World world = make_world();
+    const BodyId lift = add(world, {.kind = BodyKind::Kinematic}, Box{});
+    int steps = 0;
+    for (; state(world, lift).pose.position.x < 99.9 && steps < 100; ++steps) {
+        ASSERT_TRUE(world.move_kinematic(lift, {{100, 0, 0}, {}}, world.settings().time_step));
+        const auto report = world.step();
+        ASSERT_TRUE(report);
+        EXPECT_EQ(report->speed_clamped, steps < 5 ? 1u : 0u);  // 16.7 m in a step
+    }
+    EXPECT_EQ(steps, 6);
+}
+
 TEST(Limits, a_body_that_leaves_the_world_stays_at_its_border_and_is_reported) {
     World world = make_world();
     const BodyId ball =
