@@ -32,7 +32,7 @@ struct BodyDef {
     AxisLocks locks{};
     bool can_sleep = true;
     /// False: starts asleep and stays where it is, even in the air, until something wakes it. The body and those that
-    /// touch it must then be at rest.
+    /// touch it must then be at rest: a velocity that is not 0 is refused.
     bool awake = true;
     /// Mass, centre and inertia in the body's frame, instead of the sum over colliders of shape times density.
     std::optional<MassProperties> mass{};

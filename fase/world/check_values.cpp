@@ -100,6 +100,10 @@ Result<void> check(const BodyDef& def) {
             check_number(def.gravity_scale, -limits::gravity_scale, limits::gravity_scale, "BodyDef.gravity_scale");
         !r)
         return r;
+    const bool moves = !(def.linear_velocity == Vec3{} && def.angular_velocity == Vec3{});
+    if (!def.awake && moves && def.kind != BodyKind::Static)
+        return refused("BodyDef.awake", "false, with a velocity that is not 0", "a body at rest",
+                       "leave it awake, or set the velocity when it wakes");
     return def.mass ? check_mass(*def.mass, "BodyDef.") : Result<void>();
 }
 

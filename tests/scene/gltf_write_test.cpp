@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "fase/geometry/hull_builder.hpp"
@@ -225,6 +226,32 @@ TEST(WrittenGltf, RefusesInconsistentScenes) {
     mesh = scene_with_all_fields();
     mesh.meshes[0] = {};
     EXPECT_EQ(gltf_bytes(mesh, GltfForm::Text).status(), Status::BadArgument);
+}
+
+TEST(WrittenGltf, ASleepingBodyIsReadAtRest) {
+    Scene scene = scene_with_all_fields();
+    std::size_t dynamic = 0;
+    for (Body& body : scene.bodies) {
+        if (body.def.kind == BodyKind::Static) continue;
+        dynamic += body.def.kind == BodyKind::Dynamic ? 1 : 0;
+        body.def.awake = false;
+        body.def.linear_velocity = {1, 0, 0};
+    }
+    ASSERT_GT(dynamic, 0u);
+    const auto bytes = gltf_bytes(scene, GltfForm::Text);
+    ASSERT_TRUE(bytes) << bytes.error().text();
+    const Result<Scene> read = test::read_text(*bytes);
+    ASSERT_TRUE(read) << read.error().text();
+    for (const Body& body : read->bodies) {
+        EXPECT_EQ(body.def.awake, body.def.kind != BodyKind::Dynamic) << body.name;
+        EXPECT_EQ(length(body.def.linear_velocity) > 0, body.def.kind == BodyKind::Kinematic) << body.name;
+    }
+    EXPECT_TRUE(std::any_of(read->warnings.begin(), read->warnings.end(), [](const std::string& text) {
+        return text.starts_with("velocities of sleeping bodies are skipped");
+    }));
+    Result<World> world = World::create(settings_for(*read));
+    ASSERT_TRUE(world);
+    EXPECT_TRUE(instantiate(*read, *world));
 }
 
 TEST(WrittenGltf, TheExtensionSelectsTheForm) {

@@ -226,6 +226,7 @@ std::vector<BodyId> fill(World& world, int count, std::uint64_t seed) {
         def.rotation = random_rotation(random);
         if (def.kind != BodyKind::Static && i % 3 == 0) def.linear_velocity = in_cube(random, 20);
         if (def.kind == BodyKind::Dynamic) def.awake = i % 4 != 0;
+        if (!def.awake) def.linear_velocity = {};
         bodies.push_back(add(world, def, any_shape(random), {.sensor = i % 11 == 0}));
         if (i % 7 == 0) {
             EXPECT_TRUE(world.add_collider(bodies.back(), any_shape(random),

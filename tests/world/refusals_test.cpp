@@ -174,6 +174,14 @@ TEST_F(Refusals, texts_tell_why_an_id_is_not_valid) {
     EXPECT_TRUE(world.exclude_pair(box, removed).error().text().starts_with("World::exclude_pair: b: found the id"));
 }
 
+TEST_F(Refusals, a_sleeping_body_with_a_velocity) {
+    expect_refused(world.add_body({.linear_velocity = {1, 0, 0}, .awake = false}, Sphere{}), Status::BadArgument,
+                   "BodyDef.awake: found false, with a velocity that is not 0");
+    expect_refused(world.add_body({.kind = BodyKind::Kinematic, .angular_velocity = {0, 1, 0}, .awake = false}),
+                   Status::BadArgument, "BodyDef.awake");
+    EXPECT_TRUE(world.add_body({.awake = false}, Sphere{}));
+}
+
 TEST_F(Refusals, settings_out_of_range) {
     const auto with = [&](auto change, const char* field) {
         Settings settings = world.settings();

@@ -218,9 +218,21 @@ private:
             body.def.gravity_scale = static_cast<float>(motion->gravity);
         }
         if (own) read_body_extras(*own, body.def);
+        rest_if_asleep(body.def);
         scene_.bodies.push_back(std::move(body));
         frames_.push_back(std::move(frame));
         return static_cast<std::uint32_t>(scene_.bodies.size() - 1);
+    }
+
+    /// A world refuses a sleeping body that has a velocity; a file may have both.
+    void rest_if_asleep(BodyDef& def) {
+        if (def.awake || (def.linear_velocity == Vec3{} && def.angular_velocity == Vec3{})) return;
+        if (def.kind == BodyKind::Kinematic) {
+            def.awake = true;
+            return;
+        }
+        def.linear_velocity = def.angular_velocity = {};
+        warnings_.add("velocities of sleeping bodies are skipped", Harm::Changed);
     }
 
     static void read_body_extras(JsonValue own, BodyDef& def) {
