@@ -6,6 +6,7 @@ differs from its file, or when a picture that `fase` draws does not exist. The l
 """
 import argparse
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -20,6 +21,7 @@ PAGES = "docs/pictures/structures"  # a picture for each structure's page
 STRUCTURES = ["quadtree", "kd_tree", "dynamic_bvh", "row_grid"]
 DRAWN = ["cities.svg", "asleep.svg", "atlas.png", *(f"{name}.svg" for name in STRUCTURES)]
 COLOURS = [(0x00, 0x72, 0xb2), (0xd5, 0x5e, 0x00), (0x00, 0x9e, 0x73), (0xcc, 0x79, 0xa7), (0xe6, 0x9f, 0x00), (0x56, 0xb4, 0xe9)]
+GROUND = bytes((0xe4, 0xe7, 0xeb, 0xff))  # of sprites: shows their rectangles on the page
 
 
 def write_cities(path):
@@ -35,8 +37,8 @@ def write_cities(path):
 
 
 def png(width, height, colour, inside):
-    """A PNG file of one colour, transparent where inside(x, y) is false; x and y go from -1 to 1."""
-    rows = b"".join(b"\0" + b"".join(bytes((*colour, 255)) if inside(2 * (x + 0.5) / width - 1, 2 * (y + 0.5) / height - 1) else bytes(4)
+    """A PNG file of one colour, light grey where inside(x, y) is false; x and y go from -1 to 1."""
+    rows = b"".join(b"\0" + b"".join(bytes((*colour, 255)) if inside(2 * (x + 0.5) / width - 1, 2 * (y + 0.5) / height - 1) else GROUND
                                      for x in range(width)) for y in range(height))
 
     def chunk(kind, data):
@@ -56,6 +58,31 @@ def write_sprites(folder):
         (folder / f"sprite{i:02}.png").write_bytes(png(width, height, COLOURS[i % len(COLOURS)], forms[i % len(forms)]))
 
 
+def add(path, shapes):
+    """Adds shapes to the end of a drawing, whose content begins 64 pixels below its legend."""
+    text = path.read_text(encoding="utf-8")
+    group = f'<g transform="translate(0 64)" font-family="sans-serif" font-size="14" fill="#1f2328">{shapes}</g>'
+    path.write_text(text.replace("</svg>", f"{group}\n</svg>"), encoding="utf-8")
+
+
+def add_distance(path):
+    """Adds the 120 m between the middles of the two crowds: the boxes fill the width of the page but for 20 pixels on each side."""
+    lefts = [float(x) for x in re.findall(r'<rect x="([\d.]+)" y="[\d.]+" width="[\d.]+" height="[\d.]+"/>', path.read_text(encoding="utf-8"))]
+    middles = [sum(crowd) / len(crowd) for crowd in ([x for x in lefts if x < 450], [x for x in lefts if x > 450])]
+    line = "M{0:.0f} 131v12m0-6H{1:.0f}m0-6v12".format(*middles)
+    add(path, f'<path d="{line}" fill="none" stroke="#1f2328" stroke-width="1.5"/><text x="450" y="129" text-anchor="middle">120 m</text>')
+
+
+def add_enlarged_cell(path):
+    """Adds a cell of the loose octree at depth 3, away from the border, and the limit of its boxes, which is half a side farther out."""
+    layer = re.search(r'id="depth3" d="([^"]+)"', path.read_text(encoding="utf-8"))[1]
+    cells = [tuple(map(float, cell)) for cell in re.findall(r"M([\d.]+) ([\d.]+)h([\d.]+)v([\d.]+)", layer)]
+    x, y, width, height = next(cell for cell in cells if min(cell[:2]) > 200)
+    add(path, f'<rect x="{x}" y="{y}" width="{width}" height="{height}" fill="none" stroke="#cc79a7" stroke-width="4"/>'
+              f'<rect x="{x - width / 2}" y="{y - height / 2}" width="{2 * width}" height="{2 * height}" fill="none" stroke="#cc79a7" '
+              'stroke-width="3" stroke-dasharray="9 6"/>')
+
+
 def draw(program, pictures, pages):
     """Writes the pictures that the command draws: those of the tour, and those of the structures' pages."""
     def fase(*arguments):
@@ -65,6 +92,7 @@ def draw(program, pictures, pages):
         folder = Path(name)
         write_cities(folder / "cities.aabt")
         fase("draw", folder / "cities.aabt", "--structure", "dynamic_bvh", "-o", pictures / "cities.svg")
+        add_distance(pictures / "cities.svg")
         fase("run", "sleepers", "--count", 300, "--seconds", 4, "--trace", folder / "asleep.aabt")
         fase("draw", folder / "asleep.aabt", "--structure", "dynamic_bvh", "--frame", 200, "-o", pictures / "asleep.svg")
         fase("generate", "flat", "--count", 250, "--frames", 20, "-o", folder / "flat.aabt")
@@ -72,6 +100,7 @@ def draw(program, pictures, pages):
             fase("draw", folder / "flat.aabt", "--structure", structure, "--frame", 10, "-o", pictures / f"{structure}.svg")
         fase("run", "domino", "--count", 800, "--steps", 301, "--trace", folder / "domino.aabt")
         fase("draw", folder / "domino.aabt", "--structure", "all", "--frame", 300, "-o", f"{pages}/")
+        add_enlarged_cell(pages / "loose_octree.svg")
         write_sprites(folder / "sprites")
         fase("atlas", folder / "sprites", "-o", folder / "atlas", "--padding", 2, "--tries", 100)
         (pictures / "atlas.png").write_bytes((folder / "atlas.png").read_bytes())

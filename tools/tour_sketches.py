@@ -105,12 +105,13 @@ def two_phases():
 
 
 def planes():
-    """A BSP tree of six walls: the plan on the left, the tree on the right."""
-    sketch = Sketch(400, "A BSP tree of six walls",
+    """A BSP tree of six walls and a crate: the plan on the left, the tree on the right."""
+    sketch = Sketch(425, "A BSP tree of six walls and a crate",
                     "From above. Each plane lies on a face of a wall and divides what is left of the level.").view(30, 96, 25)
-    walls = {"a": (0, 5, 8, 5.6), "b": (9.6, 5, 14, 5.6), "c": (4, 0, 4.6, 5), "d": (10, 0, 10.6, 5), "e": (3, 5.6, 3.6, 10), "f": (9, 5.6, 9.6, 10)}
-    for name, (x0, z0, x1, z1) in walls.items():
-        sketch.box(x0, z0, x1, z1, fill=STATIC, stroke=STATIC, opacity=0.5)
+    boxes = {"a": (0, 5, 8, 5.6), "b": (9.6, 5, 14, 5.6), "c": (4, 0, 4.6, 3), "d": (10, 0, 10.6, 5), "e": (3, 5.6, 3.6, 10), "f": (9, 5.6, 9.6, 10),
+             "g": (3.9, 3.4, 5.3, 4.6)}
+    for name, (x0, z0, x1, z1) in boxes.items():
+        sketch.box(x0, z0, x1, z1, fill=AWAKE if name == "g" else STATIC, stroke=AWAKE if name == "g" else STATIC, opacity=0.5)
         sketch.label((x0 + x1) / 2, (z0 + z1) / 2, name, anchor="middle", dy=4, halo=False)
     sketch.path([(-0.7, 5), (15.2, 5)], svg.VERMILION)
     sketch.label(15.3, 5, "1", colour=svg.VERMILION, dy=4)
@@ -122,17 +123,18 @@ def planes():
     sketch.label(3.6, 10.6, "4", colour=svg.BLUE, anchor="middle", dy=16)
     sketch.view(466, 100, 1)
     nodes = {"1": (150, 0, svg.VERMILION), "2": (60, 80, svg.GREEN), "3": (225, 80, svg.PURPLE), "4": (265, 160, svg.BLUE)}
-    leaves = {"c": (20, 160), "d": (100, 160), "a b": (180, 160), "e": (230, 240), "f": (300, 240)}
-    edges = [("1", "2"), ("1", "3"), ("2", "c"), ("2", "d"), ("3", "a b"), ("3", "4"), ("4", "e"), ("4", "f")]
+    leaves = {"c": (10, 160), "g": (60, 160), "d": (110, 160), "a b": (185, 160), "e": (230, 240), "f": (300, 240)}
+    edges = [("1", "2"), ("1", "3"), ("2", "c"), ("2", "g"), ("2", "d"), ("3", "a b"), ("3", "4"), ("4", "e"), ("4", "f")]
     for parent, child in edges:
         sketch.path([nodes[parent][:2], (nodes.get(child) or leaves[child])[:2]], svg.GREY, width=1.2)
     for name, (x, y, colour) in nodes.items():
         sketch.circle(x, y, 15, fill="#ffffff", stroke=colour, opacity=1, width=2.5)
         sketch.label(x, y, name, anchor="middle", dy=5, halo=False)
     for name, (x, y) in leaves.items():
-        sketch.box(x - 20, y - 14, x + 20, y + 14, fill="#e6e9ed", stroke=STATIC, opacity=1)
+        sketch.box(x - 20, y - 14, x + 20, y + 14, fill="#e6e9ed", stroke=AWAKE if name == "g" else STATIC, opacity=1)
         sketch.label(x, y, name, anchor="middle", dy=5, halo=False)
-    sketch.note(466, 385, "circles: planes; boxes: leaves with their walls")
+    sketch.note(30, 390, "Circles are planes, boxes are leaves. The left child is in front of the plane (above it or left of it in the plan), the",
+                "right child behind; between them is what straddles the plane. Plane 2 ends at plane 1.")
     return sketch.finish()
 
 
@@ -168,6 +170,75 @@ def leaves():
     return sketch.finish()
 
 
+def octree():
+    """A cube with its eight children; the near upper right one is split again."""
+    sketch = Sketch(330, "An octree", "A cube with more boxes than the capacity is split in half along all three axes.").view(150, 240, 62)
+
+    def at(x, y, z):
+        return x + 0.5 * z, -y - 0.35 * z
+
+    def faces(x, y, z, side, **style):
+        """The front, the upper and the right face of a cube."""
+        for corners in (((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), ((0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)),
+                        ((1, 0, 0), (1, 0, 1), (1, 1, 1), (1, 1, 0))):
+            sketch.polygon([at(x + side * a, y + side * b, z + side * c) for a, b, c in corners], **style)
+
+    def split(x, y, z, side, **style):
+        for c in (1, 0):
+            for b in (0, 1):
+                for a in (0, 1):
+                    faces(x + a * side / 2, y + b * side / 2, z + c * side / 2, side / 2, fill="#ffffff", opacity=1, **style)
+
+    for left, title in ((60, "a cube: a leaf"), (310, "split: up to 8 children"), (560, "one of them split again")):
+        sketch.view(left, 270, 62)
+        if left == 60:
+            faces(0, 0, 0, 2, fill=svg.SKY, stroke=NODE, opacity=0.12)
+        else:
+            split(0, 0, 0, 2, stroke=NODE)
+        if left == 560:
+            split(1, 1, 0, 1, stroke=svg.VERMILION)
+        sketch.note(left, 82, title)
+    sketch.note(20, 318, "Numbers of children have one bit per axis: 0 in the lower half, 1 in the upper half. Empty children are not created.")
+    return sketch.finish()
+
+
+def atlas_tree():
+    """Three images on a page, and the kD-tree of its free space after each."""
+    sketch = Sketch(420, "A kD-tree of free space",
+                    "Each image goes into the upper left corner of a free leaf; one or two cuts separate it from the rest of the leaf.")
+    images = {"A": (0, 0, 60, 50), "B": (60, 0, 30, 50), "C": (0, 50, 80, 25)}
+    colours = {"A": svg.SKY, "B": svg.ORANGE, "C": svg.GREEN}
+    sketch.view(30, 90, 2.6)
+    sketch.box(0, 0, 100, 100)
+    for name, (x, y, width, height) in images.items():
+        sketch.box(x, y, x + width, y + height, fill=colours[name], stroke=colours[name], opacity=0.4)
+        sketch.label(x + width / 2, y + height / 2, f"{name}: {width} x {height}", anchor="middle", dy=5, halo=False)
+    for x0, y0, x1, y1, name, colour in ((0, 50, 100, 50, "1", svg.VERMILION), (60, 0, 60, 50, "2", svg.VERMILION), (90, 0, 90, 50, "3", svg.PURPLE),
+                                         (0, 75, 100, 75, "4", svg.NAVY), (80, 50, 80, 75, "5", svg.NAVY)):
+        sketch.path([(x0, y0), (x1, y1)], colour, width=2)
+        sketch.label(x1, y1, name, dx=4 if x1 == 100 else -3, dy=4 if x1 == 100 else 14, colour=colour, anchor="start" if x1 == 100 else "end")
+    for x, y, name in ((95, 25, "p"), (90, 62, "q"), (50, 88, "r")):
+        sketch.label(x, y, name, anchor="middle", dy=5, colour=svg.GREY)
+    sketch.view(340, 110, 1)
+    nodes = {"1": (190, 0, svg.VERMILION), "2": (95, 65, svg.VERMILION), "3": (145, 130, svg.PURPLE),
+             "4": (295, 65, svg.NAVY), "5": (245, 130, svg.NAVY)}
+    leaves = {"A": (45, 130), "B": (110, 195), "p": (170, 195), "C": (225, 195), "q": (285, 195), "r": (345, 130)}
+    for parent, child in (("1", "2"), ("1", "4"), ("2", "A"), ("2", "3"), ("3", "B"), ("3", "p"), ("4", "5"), ("4", "r"), ("5", "C"), ("5", "q")):
+        sketch.path([nodes[parent][:2], (nodes.get(child) or leaves[child])[:2]], svg.GREY, width=1.2)
+    for name, (x, y, colour) in nodes.items():
+        sketch.circle(x, y, 14, fill="#ffffff", stroke=colour, opacity=1, width=2.5)
+        sketch.label(x, y, name, anchor="middle", dy=5, halo=False)
+    for name, (x, y) in leaves.items():
+        colour = colours.get(name)
+        sketch.box(x - 18, y - 14, x + 18, y + 14, fill="#ffffff", stroke=STATIC, opacity=1, dashed=colour is None)
+        if colour:
+            sketch.box(x - 18, y - 14, x + 18, y + 14, fill=colour, stroke=colour, opacity=0.4)
+        sketch.label(x, y, name, anchor="middle", dy=5, halo=False)
+    sketch.note(330, 350, "Circles: cuts, in the order in which they were made.", "Full boxes: leaves with an image; dashed ones: free leaves.",
+                "A made 1 and 2, B made 3, C made 4 and 5.")
+    return sketch.finish()
+
+
 def bounce():
     sketch = Sketch(290, "An elastic collision of two ghosts of equal mass",
                     "They exchange the parts of their velocities along the line between them.")
@@ -191,7 +262,8 @@ def bounce():
 def players():
     """The paths of example_07_walls_and_players, by the same rule."""
     sketch = Sketch(420, "Two indexes: walls and players",
-                    "From above; a square of the grid is 1 m wide. Walls are static, players move.").view(60, 70, 32)
+                    "From above, z points up to the north; a square of the grid is 1 m wide. Walls are static, players move.")
+    sketch.view(60, 390, 32, up=True)
     for i in range(11):
         sketch.path([(i, 0), (i, 10)], svg.GRID, width=1)
         sketch.path([(0, i), (10, i)], svg.GRID, width=1)
@@ -219,13 +291,17 @@ def players():
         sketch.circle(*points[-1], 0.5, fill=colour, stroke=colour, opacity=0.5)
         sketch.label(*points[0], name, dx=20, dy=-8)
         sketch.label(*points[-1], f"({points[-1][0]:.2f}, {points[-1][1]:.2f})", anchor="end", dx=-20, dy=5)
-    sketch.note(430, 100, "dashed: where a player begins", "filled: where it ends")
+    sketch.note(470, 100, "dashed: where a player begins", "filled: where it ends, at (x, z)")
+    for x, z, name, dx, dy in ((15.6, 1, "x, east", 6, 5), (14, 2.6, "z, north", 0, -6)):
+        sketch.arrow(14, 1, x, z, svg.GREY, width=1.5)
+        sketch.label(x, z, name, anchor="middle" if dy < 0 else "start", dx=dx, dy=dy)
     return sketch.finish()
 
 
 def sleepers():
     """The room of example_08_sleepers when the door is open."""
-    sketch = Sketch(470, "The door is open", "From above: a monster wakes when its box touches the circle of 4 m around the door.").view(150, 80, 18)
+    sketch = Sketch(470, "The door is open",
+                    "From above: boxes of 1.2 m, 1 m apart, so neighbours overlap. Those that touch the circle of 4 m around the door wake.").view(150, 80, 18)
     awake = 0
     for i in range(400):
         x, z = i % 20, i // 20
@@ -233,7 +309,7 @@ def sleepers():
         near = dx * dx + dz * dz <= 16
         awake += near
         colour = AWAKE if near else RESTING
-        sketch.box(x - 0.42, z - 0.42, x + 0.42, z + 0.42, fill=colour, stroke=colour, opacity=0.55, width=1)
+        sketch.box(x - 0.6, z - 0.6, x + 0.6, z + 0.6, fill=colour, stroke=colour, opacity=0.3, width=0.8)
     sketch.circle(-1, 10, 4, stroke=svg.INK, dashed=True)
     sketch.box(-1.6, 9.4, -0.4, 10.6, fill=svg.PURPLE, stroke=svg.PURPLE, opacity=0.7)
     sketch.label(-1.8, 10, "player", anchor="end", dy=5)
@@ -297,7 +373,8 @@ def step():
 def queries():
     """The scene of example_13_world_queries, from the side."""
     sketch = Sketch(370, "Queries of a world",
-                    "From the side; a crate is 1 m high. Distances are measured to the exact shapes.").view(90, 320, 46, up=True)
+                    "From the side; a crate is 1 m high, crates are bodies 1 to 5. Distances are measured to the exact shapes.")
+    sketch.view(90, 320, 46, up=True)
     sketch.path([(-1.2, 0), (13.4, 0)], STATIC, width=4)
     for i in range(5):
         sketch.box(9.5, i, 10.5, i + 1, fill=STATIC, stroke=STATIC, opacity=0.5)
@@ -311,16 +388,16 @@ def queries():
     sketch.point(0, 3)
     sketch.label(0, 3, "nearest to this point:", dx=10, dy=-4)
     sketch.path([(0, 3), (0, 1.8)], svg.GREY, dashed=True)
-    sketch.label(0, 2.4, "the ball, 1.20 m", dx=10, dy=5)
+    sketch.label(0, 2.4, "the ball (body 6), 1.20 m", dx=10, dy=5)
     sketch.path([(0, 3), (-0.6, 3), (-0.6, 0)], svg.GREY, dashed=True)
-    sketch.label(-0.6, 0.5, "the ground, 3.00 m", dx=8, dy=5)
+    sketch.label(-0.6, 0.5, "the ground (body 0), 3.00 m", dx=8, dy=5)
     return sketch.finish()
 
 
 def planks():
     """The planks of example_15_push_and_spin, five times in a second."""
     sketch = Sketch(410, "The same push, in the middle and at the end",
-                    "From above: the planks after 0, 0.25, 0.5, 0.75 and 1 s; arrows: where they are pushed.")
+                    "From above: the planks after 0, 0.25, 0.5, 0.75 and 1 s, the later the darker; arrows: where they are pushed or turned.")
     spin = 80 / (80 / 12 * (2**2 + 0.2**2))  # impulse times arm, divided by the moment of inertia
     for left, title, moves, spins in ((150, "push in the middle: moves", 1, 0), (400, "push at the end: moves and turns", 1, spin),
                                       (650, "torque: turns faster and faster", 0, -1)):
@@ -333,8 +410,13 @@ def planks():
         if moves:
             at = 0.95 if spins else 0
             sketch.arrow(at, -0.38, at, -0.1, RAY)
+        else:
+            arc = [(0.45 * math.cos(a), 0.45 * math.sin(a)) for a in (-1.9 + 0.1 * k for k in range(14))]
+            sketch.path(arc, RAY, width=2.5)
+            sketch.arrow(*arc[-1], 0.45 * math.cos(-0.3), 0.45 * math.sin(-0.3), RAY)
     return sketch.finish()
 
 
-SKETCHES = {"index": index, "two_phases": two_phases, "planes": planes, "leaves": leaves, "bounce": bounce, "players": players,
+SKETCHES = {"index": index, "two_phases": two_phases, "planes": planes, "leaves": leaves, "octree": octree, "atlas_tree": atlas_tree, "bounce": bounce,
+            "players": players,
             "sleepers": sleepers, "rays": rays, "step": step, "queries": queries, "planks": planks}
