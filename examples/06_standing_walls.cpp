@@ -1,4 +1,4 @@
-// A static maze: trees are built once for its walls, then queried for lines of sight.
+// A static maze: trees are built once for its walls, queried for lines of sight, and built again when walls fall.
 #include <cstdio>
 #include <vector>
 
@@ -22,6 +22,13 @@ std::vector<fase::broad::Move> maze() {
     return walls;
 }
 
+template <fase::broad::Structure Tree> int print(const Tree& tree, const std::vector<std::uint8_t>& blocked) {
+    int visible = 0;
+    for (const std::uint8_t is_blocked : blocked) visible += is_blocked == 0 ? 1 : 0;
+    std::printf("%-9s %zu walls, %d of 1000 see each other\n", Tree::info.name.data(), tree.size(), visible);
+    return visible;
+}
+
 template <fase::broad::Structure Tree> int count_visible(const std::vector<fase::broad::Move>& walls) {
     Tree tree;
     tree.build(walls);
@@ -36,10 +43,13 @@ template <fase::broad::Structure Tree> int count_visible(const std::vector<fase:
     std::vector<std::uint8_t> blocked;
     const auto tasks = fase::make_thread_runner(2);
     fase::query::any_hits(*tasks, tree, lines_of_sight, blocked);
-    int visible = 0;
-    for (const std::uint8_t is_blocked : blocked) visible += is_blocked == 0 ? 1 : 0;
-    std::printf("%-9s %zu walls, %d of 1000 see each other\n", Tree::info.name.data(), tree.size(), visible);
-    return visible;
+    const int visible = print(tree, blocked);
+    // A bomb destroys the walls in a square of 12 m: the next commit() builds the whole tree again.
+    for (const auto& [proxy, box] : walls)
+        if (fase::overlaps(box, {{14, 0, 14}, {26, 2, 26}})) tree.erase(proxy);
+    tree.commit();
+    fase::query::any_hits(*tasks, tree, lines_of_sight, blocked);
+    return visible + print(tree, blocked);
 }
 
 int main() {

@@ -418,5 +418,5 @@ def planks():
 
 
 SKETCHES = {"index": index, "two_phases": two_phases, "planes": planes, "leaves": leaves, "octree": octree, "atlas_tree": atlas_tree, "bounce": bounce,
-            "players": players,
-            "sleepers": sleepers, "rays": rays, "step": step, "queries": queries, "planks": planks}
+            "players": players, "sleepers": sleepers, "rays": rays, "step": step,
+            "queries": queries, "planks": planks}
