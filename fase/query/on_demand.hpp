@@ -33,7 +33,7 @@ struct IndexedBoxes {
 [[nodiscard]] TaskRunner& serial_tasks();
 
 /// A structure that is built from indexed boxes by its first use, and then follows their changes, each time it is used.
-/// It is freed after 60 commits without a use.
+/// It is freed after 600 commits without a use.
 template <class S> class LazyStructure {
 public:
     /// Notes that boxes changed. When an allocation fails, changes nothing.

@@ -125,7 +125,7 @@ TEST(IndexOutOfMemory, a_commit_of_pending_changes_changes_nothing) {
             break;
         }
         EXPECT_EQ(pending(changes), first);
-        for (int i = 0; i < 60; ++i) ASSERT_TRUE(changes.commit(true, {}, 8)) << "the use still counts";
+        for (int i = 0; i < 600; ++i) ASSERT_TRUE(changes.commit(true, {}, 8)) << "the use still counts";
     }
 }
 

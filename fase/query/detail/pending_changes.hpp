@@ -16,8 +16,9 @@ namespace fase::query {
 class PendingChanges {
 public:
     using Proxy = broad::Proxy;
-    /// A structure that nobody used for so many commits should be freed.
-    static constexpr std::uint32_t commits_until_freed = 60;
+    /// A structure that nobody used for so many commits should be freed. Ten seconds of a game, because a new one costs
+    /// twenty times as much as the changes of a frame, which a game that asks once a second should not pay each time.
+    static constexpr std::uint32_t commits_until_freed = 600;
 
     PendingChanges() = default;
     PendingChanges(const PendingChanges&) = delete;

@@ -29,12 +29,12 @@ TEST(PendingChanges, AStructureThatDoesNotExistHasNoChanges) {
     EXPECT_EQ(pending(changes), Proxies{});
 }
 
-TEST(PendingChanges, TellsAfterSixtyCommitsWithoutAUse) {
+TEST(PendingChanges, TellsAfter600CommitsWithoutAUse) {
     PendingChanges changes;
     changes.use();
     for (int round = 0; round < 2; ++round) {
         EXPECT_TRUE(changes.commit(true, {}, 0)) << "it was used";
-        for (int i = 1; i < 60; ++i) EXPECT_TRUE(changes.commit(true, {}, 0)) << i;
+        for (int i = 1; i < 600; ++i) EXPECT_TRUE(changes.commit(true, {}, 0)) << i;
         if (round == 0) changes.use();
     }
     EXPECT_FALSE(changes.commit(true, {}, 0));
