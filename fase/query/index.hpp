@@ -53,6 +53,8 @@ struct IndexStatistics {
 /// allocates, once its buffers have grown, unless it returns a vector or takes `in_order`.
 ///
 /// References to values are valid until the next insert(). Ids of another index of the same type are not detected.
+/// Boxes are not checked: infinite ones are found like others, those with a NaN and the default box never, and inverted
+/// ones by some questions only.
 ///
 /// When memory runs out, insert() returns the default id and commit() returns false; nothing has changed then, and the
 /// next call works. move(), erase(), set_awake() and clear() allocate nothing. A query throws std::bad_alloc before it
@@ -91,18 +93,23 @@ public:
         mark_changed(p);
         return id(p);
     }
+    /// Inserts a point: a box of no size. `insert({5, 5, 5}, …)` is ambiguous and does not compile; write Vec3{5, 5,
+    /// 5}.
+    Id insert(Vec3 point, T value) { return insert(Aabb{point, point}, std::move(value)); }
     /// Inserts value number i with box number i; `boxes` is a span or StridedBoxes. Free proxies are used
-    /// from the smallest when nothing was erased since clear(). Returns false, and changes nothing, when memory runs
-    /// out.
+    /// from the smallest when nothing was erased since clear(). Returns false, and changes nothing, when there are not
+    /// as many boxes as values, or when memory runs out.
     template <class Boxes> bool insert(const Boxes& boxes, std::span<const T> values) {
-        FASE_ASSERT(boxes.size() == values.size());
         const std::size_t count = boxes.size();
+        if (count != values.size()) return false;
         if (free_.size() < count && !add_free_places(count - free_.size())) return false;
         for (std::size_t i = 0; i < count; ++i) insert(boxes[i], values[i]);
         return true;
     }
-    /// Replaces all values; number i gets proxy i. Returns false when memory runs out: the index is then empty.
+    /// Replaces all values; number i gets proxy i. Returns false, and changes nothing, when there are not as many boxes
+    /// as values. Returns false when memory runs out: the index is then empty.
     template <class Boxes> bool assign(const Boxes& boxes, std::span<const T> values) {
+        if (boxes.size() != values.size()) return false;
         clear();
         return insert(boxes, values);
     }
@@ -114,15 +121,18 @@ public:
         mark_changed(id.index);
         return true;
     }
+    bool move(Id id, Vec3 point) { return move(id, Aabb{point, point}); }
     /// Gives proxy i box number i, for all values; boxes of proxies without a value are ignored. `boxes` is a span or
-    /// StridedBoxes, with at least proxies() boxes (asserted).
-    template <class Boxes> void move_all(const Boxes& boxes) {
-        FASE_ASSERT(boxes.size() >= proxies());
+    /// StridedBoxes. Returns false, and changes nothing, when there are fewer than proxies() boxes. erase() does not
+    /// change proxies: keep a hole in your array, too, and do not move its last element there.
+    template <class Boxes> bool move_all(const Boxes& boxes) {
+        if (boxes.size() < proxies()) return false;
         for (std::uint32_t p = 0; p < states_.size(); ++p) {
             if (!(states_[p] & query::holds_value)) continue;
             boxes_[p] = boxes[p];
             mark_changed(p);
         }
+        return true;
     }
     bool erase(Id id) {
         if (!contains(id)) return false;
@@ -171,7 +181,10 @@ public:
     }
     [[nodiscard]] std::size_t size() const { return states_.size() - free_.size(); }
     [[nodiscard]] bool empty() const { return size() == 0; }
-    /// Returns the value of an id, which must be valid (asserted); box() and is_awake() too.
+    /// Returns the value of an id; nullptr when the id is invalid.
+    [[nodiscard]] T* find(Id id) { return contains(id) ? &*values_[id.index] : nullptr; }
+    [[nodiscard]] const T* find(Id id) const { return contains(id) ? &*values_[id.index] : nullptr; }
+    /// Returns the value of an id, which must be valid (asserted; see find()); box() and is_awake() too.
     [[nodiscard]] T& value(Id id) { return *values_[checked(id)]; }
     [[nodiscard]] const T& value(Id id) const { return *values_[checked(id)]; }
     [[nodiscard]] const Aabb& box(Id id) const { return boxes_[checked(id)]; }
@@ -237,9 +250,10 @@ public:
         for_each_pair_with(other, [&](Id mine, Proxy theirs) { call(f, *this, mine.index, other, theirs); });
     }
 
-    /// Calls f for each pair of values whose boxes are at most `radius` metres apart (0 or more, finite), as the crow
-    /// flies, once, the smaller proxy first: the fixed-radius near neighbours of all values. Boxes may be points. Keeps
-    /// a grid for this radius while it is called: another radius in each call costs an update of all boxes.
+    /// Calls f for each pair of values whose boxes are at most `radius` metres apart, as the crow flies, once, the
+    /// smaller proxy first: the fixed-radius near neighbours of all values. Boxes may be points. Keeps a grid for this
+    /// radius while it is called: another radius builds it anew. No pairs for a radius below 0 or NaN, all for
+    /// infinity.
     template <class F> void neighbours(float radius, F&& f) { visit_pairs(find_neighbours(radius), f); }
     template <class F> void neighbours(InOrder, float radius, F&& f) {
         find_neighbours(radius);
@@ -252,7 +266,9 @@ public:
     }
     /// Returns the pairs of neighbours as proxies, the smaller first, until the next call of pairs or neighbours.
     std::span<const broad::Pair> find_neighbours(float radius, TaskRunner* tasks = nullptr) {
-        FASE_ASSERT(committed_ && radius >= 0 && std::isfinite(radius));
+        FASE_ASSERT(committed_);
+        pairs_.clear();
+        if (!(radius >= 0)) return pairs_;
         if (!neighbours_) neighbours_ = std::make_unique<query::NeighbourGrid>();
         neighbours_->find(indexed_boxes(), radius, tasks, pairs_);
         return pairs_;
@@ -276,24 +292,29 @@ public:
     template <class F> void at(Vec3d point, F&& f) { overlapping(query::PointRegion(point), f); }
     template <class F> void at(Vec3d point, F&& f) const { overlapping(query::PointRegion(point), f); }
 
-    /// Returns the nearest box on the ray; nullopt when there is none.
+    /// Returns the nearest box on the ray; nullopt when there is none. Rays have unit directions (asserted): distances
+    /// and Ray::length count in lengths of the direction.
     [[nodiscard]] std::optional<Hit> cast_ray(const Ray& ray) const {
+        FASE_ASSERT(is_unit(ray.direction));
         return hit_of(query::nearest_hit(committed(), ray));
     }
     /// Returns the nearest value on the ray. exact(value, box, entry, limit) returns its distance, `entry` or more, or
     /// broad::infinite_distance when the ray misses the value in the box.
     template <class E> [[nodiscard]] std::optional<Hit> cast_ray(const Ray& ray, E&& exact) const {
+        FASE_ASSERT(is_unit(ray.direction));
         return hit_of(query::nearest_hit(committed(), ray, [&](Proxy p, const Aabb& box, float entry, float limit) {
             return exact(*values_[p], box, entry, limit);
         }));
     }
     /// Replaces `out` by the nearest hit of each ray, with proxies; a hit with `is_hit() == false` where there is none.
     void cast_rays(std::span<const Ray> rays, std::vector<query::Hit>& out, TaskRunner* tasks = nullptr) const {
+        FASE_ASSERT(std::all_of(rays.begin(), rays.end(), [](const Ray& ray) { return is_unit(ray.direction); }));
         out.clear();
         query::nearest_hits(runner(tasks), committed(), rays, out);
     }
     /// Appends all boxes that the ray hits, nearest first.
     void cast_ray_through(const Ray& ray, std::vector<Hit>& out) const {
+        FASE_ASSERT(is_unit(ray.direction));
         std::vector<query::Hit> hits;
         query::all_hits(committed(), ray, hits);
         for (const query::Hit& hit : hits) out.push_back(*hit_of(hit));
@@ -409,6 +430,9 @@ private:
     [[nodiscard]] query::IndexedBoxes indexed_boxes() const { return {boxes_, states_}; }
     [[nodiscard]] static TaskRunner& runner(TaskRunner* tasks) {
         return tasks != nullptr ? *tasks : query::serial_tasks();
+    }
+    [[nodiscard]] static bool is_unit(Vec3 direction) {
+        return std::abs(length_squared(to_double(direction)) - 1) < 2e-4;  // 1e-4 of the length
     }
     [[nodiscard]] std::uint32_t checked(Id id) const {
         FASE_ASSERT(contains(id));

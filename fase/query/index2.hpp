@@ -17,9 +17,10 @@ struct Aabb2 {
     [[nodiscard]] constexpr Aabb flat() const { return {{lo.x, lo.y, 0}, {hi.x, hi.y, 0}}; }
 };
 
-/// Index in two dimensions: rectangles, circles, rays and distances in the plane. Everything that is not listed here is
-/// that of Index: ids, commit, callbacks, errors, threads. `flat()` is the index itself, whose boxes lie in the plane
-/// z = 0. A Quadtree needs its plane: Index2<T, Quadtree>(Quadtree({.plane = Quadtree::Plane::xy})).
+/// Index in two dimensions: rectangles, circles, rays and distances in the plane. Ids, commit, callbacks, errors and
+/// threads are as in Index. `flat()` is the index itself, whose boxes lie in the plane z = 0, for what is not listed
+/// here: bulk edits, batches, filters, `in_order`, threads, iteration, statistics. A Quadtree needs its plane:
+/// Index2<T, Quadtree>(Quadtree({.plane = Quadtree::Plane::xy})).
 template <class T, class S = query::OnDemand> class Index2 {
 public:
     using Flat = Index<T, S>;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -196,6 +197,117 @@ TEST(Index, RejectsStaleIds) {
     index.clear();
     EXPECT_FALSE(index.contains(b));
     EXPECT_EQ(index.size(), 0u);
+}
+
+TEST(Index, FindsTheValueOfAnIdOrNothing) {
+    Index<std::string> index;
+    const auto a = index.insert(cube(0), "a");
+    ASSERT_NE(index.find(a), nullptr);
+    EXPECT_EQ(index.find(a), &index.value(a));
+    EXPECT_EQ(std::as_const(index).find(a), &index.value(a));
+    EXPECT_TRUE(index.erase(a));
+    index.insert(cube(1), "b");
+    EXPECT_EQ(index.find(a), nullptr) << "not the value that has its proxy now";
+    EXPECT_EQ(index.find({}), nullptr);
+}
+
+template <class I>
+concept TakesThreeNumbers = requires(I index, typename I::Id id) {
+    index.insert({5, 5, 5}, 1);
+}
+|| requires(I index, typename I::Id id) { index.move(id, {5, 5, 5}); };
+template <class I>
+concept TakesPointsAndBoxes = requires(I index, typename I::Id id) {
+    index.insert(Vec3{5, 5, 5}, 1);
+    index.move(id, Vec3{5, 5, 5});
+    index.insert({{5, 5, 5}, {6, 6, 6}}, 1);
+    index.move(id, {{5, 5, 5}, {6, 6, 6}});
+};
+
+TEST(Index, TakesPointsButNoThreeNumbersForABox) {
+    static_assert(TakesPointsAndBoxes<Index<int>> && !TakesThreeNumbers<Index<int>>);
+    on_several_structures([]<class S>() {
+        Index<int, S> index;
+        const auto id = index.insert(Vec3{5, 5, 5}, 1);
+        index.insert(Vec3{5, 5, 8}, 2);
+        index.commit();
+        EXPECT_EQ(index.box(id), (Aabb{{5, 5, 5}, {5, 5, 5}}));
+        int found = 0;
+        index.at({5, 5, 5}, [&](int value) { found += value; });
+        EXPECT_EQ(found, 1);
+        EXPECT_TRUE(index.move(id, Vec3{5, 5, 6}));
+        EXPECT_FALSE(index.move({}, Vec3{5, 5, 6}));
+        index.commit();
+        EXPECT_EQ(index.nearest({5, 5, 5}, 1)[0].distance, 1);
+        int near = 0;
+        index.neighbours(2, [&](int, int) { ++near; });
+        EXPECT_EQ(near, 1);
+    });
+}
+
+TEST(Index, BulkEditsOfWrongSizesChangeNothing) {
+    Index<int> index;
+    const std::vector<Aabb> boxes{cube(0), cube(5), cube(9)};
+    const std::vector<int> two{1, 2}, three{1, 2, 3}, four{1, 2, 3, 4};
+    const std::span<const Aabb> all(boxes);
+    ASSERT_TRUE(index.assign(all, three));
+    ASSERT_TRUE(index.commit());
+    for (const std::vector<int>& values : {two, four}) {
+        EXPECT_FALSE(index.insert(all, values));
+        EXPECT_FALSE(index.assign(all, values));
+    }
+    const std::vector<Aabb> moved{cube(20), cube(21), cube(22), cube(23)};
+    EXPECT_FALSE(index.move_all(std::span(moved).first(2)));
+    EXPECT_EQ(index.size(), 3u);
+    EXPECT_EQ(index.box(index.id(0)), cube(0));
+    EXPECT_TRUE(index.erase(index.id(1)));
+    EXPECT_FALSE(index.move_all(std::span(moved).first(2))) << "proxies keep their numbers";
+    EXPECT_EQ(index.box(index.id(2)), cube(9));
+    EXPECT_TRUE(index.move_all(std::span(moved))) << "more are ignored";
+    EXPECT_EQ(index.box(index.id(2)), cube(22));
+    EXPECT_TRUE(index.commit());
+}
+
+TEST(Index, FindsInfiniteBoxesAndNeverThoseWithANaN) {
+    constexpr float inf = Aabb::infinity, nan = std::numeric_limits<float>::quiet_NaN();
+    on_several_structures([]<class S>() {
+        Index<int, S> index;
+        index.insert({{-inf, 0, 0}, {inf, 1, 1}}, 1);
+        index.insert({{nan, 0, 0}, {1, 1, 1}}, 100);
+        index.insert(Vec3{0, nan, 0}, 100);
+        index.insert(Aabb{}, 100);
+        index.insert(cube(50), 2);
+        index.commit();
+        int sum = 0;
+        const auto add = [&](int value) { sum += value; };
+        index.overlapping(cube(50), add);
+        EXPECT_EQ(std::exchange(sum, 0), 3);
+        index.overlapping(query::SphereRegion({0, 0, 0}, 1), add);
+        EXPECT_EQ(std::exchange(sum, 0), 1);
+        index.at({50.5, 0.5, 0.5}, add);
+        EXPECT_EQ(std::exchange(sum, 0), 3);
+        index.pairs([&](int a, int b) { sum += a + b; });
+        EXPECT_EQ(std::exchange(sum, 0), 3);
+        for (const auto& hit : index.nearest({0, 0, 0}, 9)) sum += index.value(hit.id);
+        EXPECT_EQ(std::exchange(sum, 0), 3);
+        std::vector<typename Index<int, S>::Hit> hits;
+        index.cast_ray_through({{60, 0.5, 0.5}, {-1, 0, 0}}, hits);
+        EXPECT_EQ(hits.size(), 2u);
+    });
+}
+
+TEST(Index, TakesAnyRadiusOfNeighbours) {
+    Index<int> index;
+    for (int i = 0; i < 20; ++i) index.insert(cube(30 * static_cast<float>(i)), i);
+    index.insert(cube(0.5f), 20);  // overlaps the first
+    index.commit();
+    const auto count = [&](float radius) { return index.find_neighbours(radius).size(); };
+    EXPECT_EQ(count(0), 1u);
+    EXPECT_EQ(count(-0.25f), 0u);
+    EXPECT_EQ(count(std::numeric_limits<float>::quiet_NaN()), 0u);
+    EXPECT_EQ(count(Aabb::infinity), 210u);
+    EXPECT_EQ(count(1e30f), 210u);
+    EXPECT_EQ(count(0), 1u);
 }
 
 TEST(Index, DestroysErasedValues) {
