@@ -36,8 +36,8 @@ int main() {
     walls.commit();  // builds the tree, once
 
     fase::Index<Player> players;  // move() sets their boxes
-    players.insert({}, {"red", {2, 1, 5}, {3, 0, 1}});
-    players.insert({}, {"blue", {6, 1, 3}, {-0.5f, 0, -1}});
+    players.insert(fase::Aabb{}, {"red", {2, 1, 5}, {3, 0, 1}});
+    players.insert(fase::Aabb{}, {"blue", {6, 1, 3}, {-0.5f, 0, -1}});
     for (int frame = 0; frame < 180; ++frame) {
         players.for_each([&](auto id, Player& p) {
             p.position += p.velocity * (1.0f / 60);

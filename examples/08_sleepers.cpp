@@ -26,7 +26,7 @@ int main() {
         sleepers.push_back(level.insert(box_of(m), m));
         level.set_awake(sleepers.back(), false);
     }
-    const auto player = level.insert({}, {-3, 10});
+    const auto player = level.insert(fase::Aabb{}, {-3, 10});
     const auto walk_to = [&](float x) {
         level.value(player).x = x;
         level.move(player, box_of(level.value(player)));
