@@ -205,8 +205,9 @@ Result<void> simulate(Run& run) {
     return {};
 }
 
-/// Completes the recording and the trace, also after an error, and stores their sizes in the summary.
-Result<void> finish_files(Run& run) {
+/// Completes the recording and the trace, and stores their sizes in the summary. After an error (`complete` false), the
+/// trace stays a NAME.part, so that it does not replace an older one.
+Result<void> finish_files(Run& run, bool complete) {
     Result<void> finished;
     if (run.recorder) {
         finished = run.recorder->finish();
@@ -214,7 +215,7 @@ Result<void> finish_files(Run& run) {
         run.summary.recorded_bytes = run.recorder->writer().bytes();
     }
     if (run.trace) {
-        const Result<void> traced = run.trace->finish();
+        const Result<void> traced = complete ? run.trace->finish() : run.trace->leave_part();
         run.summary.traced_frames = run.trace->writer().frames();
         run.summary.traced_bytes = run.trace->writer().bytes();
         if (finished) finished = traced;
@@ -236,7 +237,7 @@ int run_scene(const RunOptions& options) {
     Result<Run> run = prepare(options, *loaded);
     if (!run) return refuse(run.error());
     const Result<void> simulated = simulate(*run);
-    const Result<void> recorded = finish_files(*run);
+    const Result<void> recorded = finish_files(*run, simulated.has_value());
     if (!simulated) return refuse(simulated.error());
     if (!recorded) return refuse(recorded.error());
 

@@ -191,6 +191,7 @@ Result<TraceWriter> TraceWriter::create(const std::string& name, std::size_t box
 }
 
 Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
+    if (!state_) return state_;
     if (boxes.size() != boxes_)
         return Error{Status::BadArgument,
                      fmt::format("frame {}", frames_),
@@ -210,6 +211,7 @@ Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
     if (const Result<void> written = file_.append(frame_bytes_.bytes()); !written) {
         Error error = written.error();
         error.problem += fmt::format("; wrote {} frames, {} bytes", frames_, file_.bytes());
+        state_ = error;
         return error;
     }
     if (frames_ == 0) {
@@ -223,7 +225,7 @@ Result<void> TraceWriter::add_frame(std::span<const Aabb> boxes) {
     return {};
 }
 
-Result<void> TraceWriter::finish(std::span<const std::uint8_t> flags, bool durable) {
+Result<void> TraceWriter::write_head(std::span<const std::uint8_t> flags) {
     if (frames_ == 0) return Error{Status::BadArgument, path(), "found no frame; expected at least 1", {}};
     if (flags.size() != boxes_)
         return Error{Status::BadArgument, path(), fmt::format("found {} flags; expected {}", flags.size(), boxes_), {}};
@@ -240,8 +242,22 @@ Result<void> TraceWriter::finish(std::span<const std::uint8_t> flags, bool durab
     ByteWriter count;
     count.put(frames_);
     if (Result<void> written = file_.overwrite(head_size, std::as_bytes(flags)); !written) return written;
-    if (Result<void> written = file_.overwrite(head_size - 4, count.bytes()); !written) return written;
+    return file_.overwrite(head_size - 4, count.bytes());
+}
+
+Result<void> TraceWriter::finish(std::span<const std::uint8_t> flags, bool durable) {
+    if (!state_) {
+        (void)leave_part(flags);
+        return state_;
+    }
+    if (Result<void> written = write_head(flags); !written) return written;
     return file_.complete(durable);
+}
+
+Result<void> TraceWriter::leave_part(std::span<const std::uint8_t> flags) {
+    if (frames_ > 0) return write_head(flags);
+    file_.discard();
+    return {};
 }
 
 }  // namespace fase::record

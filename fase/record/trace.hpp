@@ -66,7 +66,8 @@ private:
 };
 
 /// Writes a trace as `NAME.part` and renames it to `NAME` when it is complete, because flags and frame count are known
-/// only at the end. An aborted run leaves a `NAME.part` that readers reject, because its frame count is 0.
+/// only at the end. An aborted run leaves a `NAME.part` that readers reject, because its frame count is 0. An older
+/// `NAME` stays as it was until then.
 class TraceWriter {
 public:
     /// Creates a trace. Errors: BadArgument for no box; Io if `name` cannot be created or is a device or pipe; Busy as
@@ -74,14 +75,18 @@ public:
     static Result<TraceWriter> create(const std::string& name, std::size_t boxes);
 
     /// Appends a frame. Errors: BadArgument, without writing, for a wrong number of boxes or a box that a reader would
-    /// reject; Io if it cannot be written: finish() then completes the previous frames.
+    /// reject; Io if it cannot be written: finish() then leaves the previous frames in `NAME.part`.
     Result<void> add_frame(std::span<const Aabb> boxes);
     /// Returns whether a body's box has changed since the first frame.
     [[nodiscard]] bool moved(std::size_t body) const { return moved_[body] != 0; }
     /// Writes flags and frame count and renames the file to its final name. Error BadArgument for no frame, a wrong
-    /// number of flags, unknown flags, and static flags of bodies that moved.
+    /// number of flags, unknown flags, and static flags of bodies that moved. After a frame that could not be written:
+    /// calls leave_part() and returns the error of that frame.
     /// @param durable also flushes it to the disk
     Result<void> finish(std::span<const std::uint8_t> flags, bool durable = false);
+    /// Writes flags and frame count and leaves the file as `NAME.part`, which readers open. Removes it if it has no
+    /// frame. Errors: those of finish().
+    Result<void> leave_part(std::span<const std::uint8_t> flags);
     /// Removes the unfinished file.
     void discard() { file_.discard(); }
 
@@ -93,6 +98,7 @@ public:
 
 private:
     TraceWriter(OutputFile file, std::size_t boxes) : file_(std::move(file)), boxes_(boxes) {}
+    Result<void> write_head(std::span<const std::uint8_t> flags);
 
     OutputFile file_;
     std::size_t boxes_;
@@ -100,6 +106,7 @@ private:
     std::vector<Aabb> first_;
     std::vector<std::uint8_t> moved_;  // by body
     ByteWriter frame_bytes_;           // reused
+    Result<void> state_;               // the error of the frame that could not be written
 };
 
 }  // namespace fase::record

@@ -33,7 +33,7 @@ Result<void> WorldTrace::add_frame(const World& world) {
     return writer_.add_frame(boxes_);
 }
 
-Result<void> WorldTrace::finish() {
+std::vector<std::uint8_t> WorldTrace::flags() const {
     std::vector<std::uint8_t> flags;
     for (std::size_t i = 0; i < tracked_.size(); ++i) {
         const bool unmoved = writer_.frames() > 0 && !writer_.moved(i);
@@ -42,7 +42,7 @@ Result<void> WorldTrace::finish() {
                         : tracked_[i].rests     ? std::uint8_t{trace_asleep}
                                                 : std::uint8_t{0});
     }
-    return writer_.finish(flags);
+    return flags;
 }
 
 }  // namespace fase::record

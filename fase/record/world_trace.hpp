@@ -1,5 +1,6 @@
 #pragma once
 /// Records the boxes of a world's colliders as a trace.
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,13 @@ public:
     /// Creates a trace. Errors: Io and Busy as in TraceWriter::create(); BadArgument for a world without colliders.
     static Result<WorldTrace> create(const std::string& name, const World& world);
     /// Appends the current state of the world. Errors: BadHandle if one of the colliders was removed; Io if the frame
-    /// cannot be written. finish() then completes the previous frames.
+    /// cannot be written. finish() then leaves the previous frames in `NAME.part`.
     Result<void> add_frame(const World& world);
-    /// Writes the flags and renames the file to its final name.
-    Result<void> finish();
+    /// Writes the flags and renames the file to its final name. After a frame that could not be written: as
+    /// TraceWriter::finish().
+    Result<void> finish() { return writer_.finish(flags()); }
+    /// Writes the flags and leaves the file as `NAME.part`; an older `NAME` stays as it was.
+    Result<void> leave_part() { return writer_.leave_part(flags()); }
 
     [[nodiscard]] const TraceWriter& writer() const { return writer_; }
 
@@ -30,6 +34,7 @@ private:
         bool is_static = true, rests = true;  ///< in all frames so far
     };
     explicit WorldTrace(TraceWriter writer) : writer_(std::move(writer)) {}
+    [[nodiscard]] std::vector<std::uint8_t> flags() const;
     TraceWriter writer_;
     std::vector<Tracked> tracked_;
     std::vector<Aabb> boxes_;

@@ -113,14 +113,17 @@ TEST(RunTrace, AnUnwritablePathIsRefusedBeforeTheRun) {
     expect_error_line(to("/dev/full"), 3, "found a device");
 }
 
-TEST(RunTrace, TheFramesThatFitOnAFullDiskAreKept) {
+TEST(RunTrace, AFullDiskKeepsTheOldTraceAndTheFramesThatFit) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
+    ASSERT_EQ(run_fase({"run", "stack", "--steps", "3", "--trace", name}).code, 0);
+    const std::string old = read_file(name);
     const Outcome outcome = RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"",
                                                   {"run", "stack", "--steps", "100000", "--trace", name, "--json"})
                                 .wait();
-    expect_error_line(outcome, 3, "frames");
-    const auto trace = record::TraceReader::open(name);
+    expect_error_line(outcome, 3, "t.aabt.part: cannot write");
+    EXPECT_EQ(read_file(name), old);
+    const auto trace = record::TraceReader::open(name + ".part");
     ASSERT_TRUE(trace) << trace.error().text();
     EXPECT_NE(outcome.err.find("wrote " + std::to_string(trace->frames()) + " frames"), std::string::npos)
         << outcome.err;

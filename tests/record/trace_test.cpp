@@ -325,9 +325,10 @@ TEST(TraceWriter, DiscardRemovesTheFile) {
     EXPECT_EQ(writer->finish(flags_for(4)).status(), Status::Io);
 }
 
-TEST(TraceWriter, CompletesTheWrittenFramesOnAFullDisk) {
+TEST(TraceWriter, LeavesTheWrittenFramesInThePartOnAFullDisk) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";
+    write_file(name, "an older trace");
     Result<TraceWriter> writer = TraceWriter::create(name, 400);
     ASSERT_TRUE(writer);
     struct rlimit before {};
@@ -346,8 +347,10 @@ TEST(TraceWriter, CompletesTheWrittenFramesOnAFullDisk) {
     setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_EQ(statuses, (std::vector<Status>{Status::Ok, Status::Ok, Status::Io}));
     EXPECT_NE(problem.find("wrote 2 frames, 19616 bytes"), std::string::npos) << problem;
-    ASSERT_TRUE(finished) << finished.error().text();
-    const Result<Frames> back = read_all(name);
+    ASSERT_FALSE(finished);
+    EXPECT_EQ(finished.error().where, name + ".part");
+    EXPECT_EQ(read_file(name), "an older trace");
+    const Result<Frames> back = read_all(name + ".part");
     ASSERT_TRUE(back) << back.error().text();
     EXPECT_EQ(back->size(), 2u);
 }
