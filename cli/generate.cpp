@@ -9,6 +9,7 @@
 
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "fase/record/generate_trace.hpp"
 #include "fase/scene/generate.hpp"
@@ -65,26 +66,40 @@ Result<void> check(const GenerateOptions& options) {
     return is_scene ? check_output(options.output, {output::scene}) : check_output(options.output, {output::trace});
 }
 
+/// Printed when a signal ends the command during a long computation.
+constexpr const char* stopped_late = "interrupted: nothing is written";
+
 int write_scene(const GenerateOptions& options) {
     if (options.frames != 0)
         return refuse({Status::BadArgument, "--frames", "found a scene; expected a trace (.aabt)", {}});
+    const Interrupts interrupts(stopped_late);
     const Result<scene::Scene> made = scene::generate(options.kind, {options.count, options.seed});
     if (!made) return refuse(with_option_names(made.error()));
+    if (Interrupts::signal() != 0) return refuse_interrupted(options.output);
     if (auto folder = make_folder_of(options.output); !folder) return refuse(folder.error());
-    if (const Result<void> written = scene::write_gltf(*made, options.output); !written) return refuse(written.error());
+    if (const Result<void> written = scene::write_gltf(*made, options.output); !written)
+        return Interrupts::signal() != 0 ? refuse_interrupted(options.output) : refuse(written.error());
     fmt::print("{}: {}, {} bodies, {} of them dynamic\n", printable(options.output), options.kind, made->bodies.size(),
                scene::dynamic_bodies(*made));
-    return exit_ok;
+    return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
 }
 
 int write_trace(const GenerateOptions& options) {
     if (auto folder = make_folder_of(options.output); !folder) return refuse(folder.error());
+    Interrupts interrupts(stopped_late);
+    bool has_part = false;
+    const auto keep_going = [&] {
+        if (!has_part) interrupts.remove_at_exit(options.output + ".part");
+        has_part = true;
+        return Interrupts::signal() == 0;
+    };
     const Result<record::GeneratedTrace> made =
-        record::generate_trace(options.kind, {options.count, options.frames, options.seed}, options.output);
+        record::generate_trace(options.kind, {options.count, options.frames, options.seed}, options.output, keep_going);
     if (!made) return refuse(with_option_names(made.error()));
+    if (made->stopped) return refuse_interrupted(options.output);
     fmt::print("{}: {}, {} boxes, {} static, {} asleep, {} frames\n", printable(options.output), options.kind,
                made->boxes, made->static_boxes, made->asleep_boxes, made->frames);
-    return exit_ok;
+    return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/input.hpp"
+#include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/view/page.hpp"
 #include "cli/view/server.hpp"
@@ -58,6 +59,7 @@ Result<void> write_page(const record::Player& player, const std::string& name) {
     if (!recording) return recording.error();
     const Result<std::string> page = self_contained_page(*recording);
     if (!page) return page.error();
+    if (Interrupts::signal() != 0) return Error{Status::Io, name, "interrupted", {}};
     if (Result<void> made = make_folder_of(name); !made) return made;
     return write_file(name, std::as_bytes(std::span(*page)));
 }
@@ -65,6 +67,7 @@ Result<void> write_page(const record::Player& player, const std::string& name) {
 Result<void> write_glb(record::Player& player, const std::string& name) {
     const Result<std::vector<std::byte>> glb = record::export_glb(player);
     if (!glb) return glb.error();
+    if (Interrupts::signal() != 0) return Error{Status::Io, name, "interrupted", {}};
     if (Result<void> made = make_folder_of(name); !made) return made;
     return write_file(name, *glb);
 }
@@ -82,6 +85,9 @@ int serve(const record::Player& player, const ViewOptions& options) {
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
+    struct sigaction hang_up {};
+    const bool ignored = ::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler == SIG_IGN;  // nohup
+    if (!ignored) sigaddset(&signals, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     Result<ViewServer> server = ViewServer::listen(options.file, options.port);
     if (!server) return refuse(server.error());
@@ -93,6 +99,21 @@ int serve(const record::Player& player, const ViewOptions& options) {
     (*server).stop();
     server_thread.join();
     return 128 + signal;
+}
+
+/// Writes the page and the animation that the options ask for.
+int write_files(record::Player& player, const ViewOptions& options) {
+    const Interrupts interrupts("interrupted: nothing is written");
+    const auto write = [&](const std::string& name, const auto& write_to) {
+        if (name.empty()) return exit_ok;
+        const Result<void> written = write_to(player, name);
+        if (!written && Interrupts::signal() != 0) return refuse_interrupted(name);
+        if (!written) return refuse(written.error());
+        fmt::print("{}\n", printable(name));
+        return Interrupts::signal() == 0 ? exit_ok : 128 + Interrupts::signal();
+    };
+    const int code = write(options.html, write_page);
+    return code == exit_ok ? write(options.glb, write_glb) : code;
 }
 
 }  // namespace
@@ -109,15 +130,7 @@ int run_view(const ViewOptions& options) {
         warn(options.file + ".part: exists too, from a recording that is running or was never finished");
     }
     if (Result<void> checked = check_outputs(options, (*player).path()); !checked) return refuse(checked.error());
-    if (!options.html.empty()) {
-        if (Result<void> written = write_page(*player, options.html); !written) return refuse(written.error());
-        fmt::print("{}\n", printable(options.html));
-    }
-    if (!options.glb.empty()) {
-        if (Result<void> written = write_glb(*player, options.glb); !written) return refuse(written.error());
-        fmt::print("{}\n", printable(options.glb));
-    }
-    if (!options.html.empty() || !options.glb.empty()) return exit_ok;
+    if (!options.html.empty() || !options.glb.empty()) return write_files(*player, options);
     return serve(*player, options);
 }
 

@@ -17,7 +17,8 @@ std::vector<TraceKind> trace_kinds() {
     return kinds;
 }
 
-Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file) {
+Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file,
+                                      const std::function<bool()>& keep_going) {
     constexpr std::size_t max_boxes = 10'000'000;
     const auto rules = trace_rules();
     const auto rule = std::find_if(rules.begin(), rules.end(), [&](const TraceRule& r) { return r.kind.name == kind; });
@@ -50,6 +51,11 @@ Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings
     }
     std::vector<Aabb> boxes;
     for (state.frame = 0; state.frame < generated.frames; ++state.frame) {
+        if (keep_going && !keep_going()) {
+            writer->discard();
+            generated.stopped = true;
+            return generated;
+        }
         if (state.frame > 0) rule->move(state);
         boxes.clear();
         for (const TraceBody& body : state.bodies) boxes.push_back({body.centre - body.half, body.centre + body.half});

@@ -2,6 +2,7 @@
 /// Generates traces: workloads that show the differences between broad phases.
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +32,13 @@ struct TraceKind {
 struct GeneratedTrace {
     std::size_t boxes = 0, static_boxes = 0, asleep_boxes = 0;
     std::uint32_t frames = 0;
+    bool stopped = false;  ///< `keep_going` returned false: no file was written
 };
 
 /// Writes a trace of a kind. Errors: BadArgument (where: "kind", "count") for an unknown kind and for more than
 /// 10,000,000 boxes; Io as in TraceWriter. Needs memory for one frame, regardless of the number of frames.
-Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file);
+/// @param keep_going called before each frame, when `file` has a `.part`; false stops and removes that
+Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings& settings, const std::string& file,
+                                      const std::function<bool()>& keep_going = {});
 
 }  // namespace fase::record

@@ -52,6 +52,30 @@ TEST(GenerateTrace, AFullDiskIsReportedWithTheWrittenAmount) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(GenerateTrace, ASignalRemovesTheUnfinishedFile) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const TemporaryFolder folder;
+        RunningFase running({"generate", "rain", "--count", "10000", "--frames", "100000", "-o", folder / "r.aabt"});
+        ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder / "r.aabt.part"); }));
+        running.send(signal);
+        const Outcome outcome = running.wait();
+        EXPECT_EQ(outcome.code, 128 + signal);
+        EXPECT_EQ(outcome.err, "fase: interrupted: " + (folder / "r.aabt") + " is not written\n");
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    }
+}
+
+TEST(Generate, ASignalLeavesNoPartOfAScene) {
+    const TemporaryFolder folder;
+    RunningFase running({"generate", "pile", "--count", "1000000", "-o", folder / "p.glb"});
+    ASSERT_TRUE(wait_until([&] { return !std::filesystem::is_empty(folder.path()); }));
+    running.send(SIGINT);
+    EXPECT_EQ(running.wait().code, 130);
+    // The signal may come too late to stop it.
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        EXPECT_EQ(entry.path().filename(), "p.glb");
+}
+
 TEST(InfoOfTraces, PrintsTheContentsAndValidatesTheWholeFile) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";

@@ -110,7 +110,7 @@ TEST(Recording, AFullDiskIsReportedWithTheWrittenAmount) {
 }
 
 TEST(Recording, ASignalEndsTheRunWithACompleteRecording) {
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const TemporaryFolder folder;
         const std::string file = folder / "r.faserec";
         RunningFase running(with(long_run, {file}));

@@ -2,11 +2,13 @@
 #include "fase/core/detail/files.hpp"
 
 #include <fcntl.h>
-
+#include <pthread.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -55,9 +57,49 @@ std::string real_path(const std::string& path) {
     return real ? real.get() : path;
 }
 
-bool write_all(int descriptor, std::span<const std::byte> bytes) {
+/// Delays the signals that end a program in this thread until the destructor, so that a temporary file can be removed.
+class EndSignals {
+public:
+    EndSignals() {
+        sigemptyset(&blocked_);
+        for (const int signal : signals) {
+            struct sigaction now = {};
+            const bool ignored = ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+            if (!ignored) sigaddset(&blocked_, signal);
+        }
+        pthread_sigmask(SIG_BLOCK, &blocked_, &before_);
+    }
+    ~EndSignals() {
+        const int code = errno;
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+        errno = code;
+    }
+    EndSignals(const EndSignals&) = delete;
+    EndSignals& operator=(const EndSignals&) = delete;
+    /// Whether one of them waits to be delivered. Those that the caller blocked do not count.
+    [[nodiscard]] bool arrived() const {
+        sigset_t pending;
+        sigpending(&pending);
+        return std::any_of(signals.begin(), signals.end(), [&](int signal) {
+            return sigismember(&pending, signal) == 1 && sigismember(&blocked_, signal) == 1 &&
+                   sigismember(&before_, signal) == 0;
+        });
+    }
+
+private:
+    static constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
+    sigset_t blocked_, before_;
+};
+
+/// Writes all bytes; fails with EINTR when one of `stop` arrives.
+bool write_all(int descriptor, std::span<const std::byte> bytes, const EndSignals* stop = nullptr) {
+    constexpr std::size_t part = std::size_t(8) << 20;  // milliseconds on most disks
     while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), 1u << 30));
+        if (stop != nullptr && stop->arrived()) {
+            errno = EINTR;
+            return false;
+        }
+        const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), part));
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return false;
         bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -119,6 +161,7 @@ Result<void> write_file(const std::string& path, std::span<const std::byte> byte
         if (!write_all(device.number(), bytes) || !device.close()) return io_error(path, "write");
         return {};
     }
+    const EndSignals signals;
     // Keep a symbolic link and replace its target.
     const std::string target = exists ? real_path(path) : path;
     std::string part;
@@ -130,7 +173,7 @@ Result<void> write_file(const std::string& path, std::span<const std::byte> byte
     }
     Descriptor file(number);
     if (!file.good()) return io_error(path, "create");
-    if (!write_all(file.number(), bytes) || !file.close() || ::rename(part.c_str(), target.c_str()) != 0) {
+    if (!write_all(file.number(), bytes, &signals) || !file.close() || ::rename(part.c_str(), target.c_str()) != 0) {
         const Error error = io_error(path, "write");
         ::unlink(part.c_str());
         return error;
