@@ -46,9 +46,9 @@ Result<void> find_in_folder(const std::string& folder, std::vector<SpriteFile>& 
         const fs::path path = at->path();
         std::error_code ignored;
         if (is_png(path) && !at->is_directory(ignored)) {
-            const fs::path real = fs::canonical(path, why);
-            if (why) return io_error(path, why);
-            if (!is_below(real, root))
+            // A link that leads nowhere stays in the list: reading it fails like that of any other bad image.
+            const fs::path real = fs::canonical(path, ignored);
+            if (!ignored && !is_below(real, root))
                 return Error{
                     Status::Format, path.string(), "found a link that leaves the folder; expected a file in it", {}};
             found.push_back({path.string(), path.lexically_relative(folder).generic_string()});

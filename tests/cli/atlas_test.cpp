@@ -164,6 +164,19 @@ TEST(AtlasCommand, LeavesOutBadImagesOnRequest) {
                       "--skip-bad: found --rects");
 }
 
+TEST(AtlasCommand, LinksThatLeadNowhereAreBadImages) {
+    const TemporaryFolder folder;
+    const std::string sprites = make_sprites(folder), name = folder / "sheet";
+    fs::create_symlink("nothing.png", sprites + "/lost.png");
+    expect_error_line(run_fase({"atlas", sprites, "-o", name}), 3, "/lost.png: cannot open: ");
+    fs::create_symlink("circle.png", sprites + "/circle.png");
+    const Outcome made = run_fase({"atlas", sprites, "-o", name, "--skip-bad"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    for (const char* words : {"/lost.png: cannot open: ", "/circle.png: cannot open: ", "2 of 7 images cannot be read"})
+        EXPECT_NE(made.err.find(words), std::string::npos) << made.err;
+    EXPECT_TRUE(fs::exists(name + ".png"));
+}
+
 TEST(AtlasCommand, RefusesALinkThatLeavesTheFolder) {
     const TemporaryFolder folder;
     const std::string sprites = make_sprites(folder);
