@@ -118,7 +118,12 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
     return text;
 }
 
-std::string to_table(const std::vector<checks::Row>& rows) {
+/// How far a command came until a signal; "" if it came to the end.
+std::string interruption(std::size_t finished, std::size_t cases) {
+    return finished == cases ? "" : fmt::format("interrupted after {} of {} cases", finished, cases);
+}
+
+std::string to_table(const std::vector<checks::Row>& rows, const std::string& interrupted) {
     std::vector<std::vector<std::string>> lines{{"case", "expected", "measured", "limit", "unit", ""}};
     std::string notes;
     std::size_t failed = 0;
@@ -129,8 +134,9 @@ std::string to_table(const std::vector<checks::Row>& rows) {
                          limit_text(row.figure), std::string(row.figure.unit), row.ok ? "ok" : "FAILED"});
         if (!row.note.empty()) notes += fmt::format("{}/{}: {}\n", row.suite, row.name, row.note);
     }
-    return aligned(lines) + notes +
-           fmt::format("{} of {} figures are within their limits\n", rows.size() - failed, rows.size());
+    return aligned(lines) + notes + (interrupted.empty() ? "" : interrupted + ": ") +
+           fmt::format("{} of {} {}figures are within their limits\n", rows.size() - failed, rows.size(),
+                       interrupted.empty() ? "" : "measured ");
 }
 
 std::string to_list(const std::vector<Chosen>& cases, bool json) {
@@ -167,7 +173,8 @@ int run_check(const CheckOptions& options) {
         return exit_ok;
     }
     std::vector<checks::Row> rows;
-    const Interrupts interrupts;
+    std::size_t finished = 0;
+    const Interrupts interrupts("interrupted during a case");
     {
         Progress progress("case", cases->size());
         for (std::size_t i = 0; i < cases->size() && Interrupts::signal() == 0; ++i) {
@@ -184,10 +191,13 @@ int run_check(const CheckOptions& options) {
             context.keep_going = keep_going;
             const std::vector<checks::Row> measured = checks::run_case(chosen.suite, chosen.one, context);
             rows.insert(rows.end(), measured.begin(), measured.end());
+            finished += measured.empty() ? 0 : 1;
         }
     }
-    text = options.json ? to_json(rows) : to_table(rows);
+    const std::string interrupted = Interrupts::signal() == 0 ? std::string() : interruption(finished, cases->size());
+    text = options.json ? to_json(rows) : to_table(rows, interrupted);
     std::fwrite(text.data(), 1, text.size(), stdout);
+    if (options.json && !interrupted.empty()) print_line("warning", interrupted);
     if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_ok = std::all_of(rows.begin(), rows.end(), [](const checks::Row& row) { return row.ok; });
     return all_ok ? exit_ok : exit_check_failed;

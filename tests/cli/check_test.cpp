@@ -50,6 +50,20 @@ TEST_F(Check, TheTableEndsWithACount) {
     EXPECT_NE(outcome.out.find("15 of 15 figures are within their limits\n"), std::string::npos) << outcome.out;
 }
 
+TEST_F(Check, ASignalIsNamedWithTheCasesBeforeIt) {
+    for (const bool json : {false, true}) {
+        std::vector<std::string> arguments{"check", "all", "--runs", "100000"};
+        if (json) arguments.emplace_back("--json");
+        RunningFase running(arguments);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        running.send(SIGINT);
+        const Outcome outcome = running.wait();
+        EXPECT_EQ(outcome.code, 130);
+        EXPECT_NE((json ? outcome.err : outcome.out).find("interrupted after "), std::string::npos)
+            << outcome.out << outcome.err;
+    }
+}
+
 TEST_F(Check, RefusesWhatItDoesNotKnow) {
     expect_error_line(run_fase({"check", "nothing"}), 2, "expected one of stacks, bounce");
     expect_error_line(run_fase({"check", "stacks", "--case", "("}), 2, "expected a regular expression");
