@@ -143,8 +143,8 @@ void add_bench_pairs(Command& group, CommandRegistry& registry) {
     add_json(command, bench.json);
     command.set_footer(
         "\nExamples:\n"
-        "  fase generate gas --count 10000 -o gas.aabt && fase bench pairs gas.aabt\n"
-        "  fase bench pairs gas.aabt --engine structures --json\n"
+        "  fase generate rain --count 10000 -o rain.aabt && fase bench pairs rain.aabt\n"
+        "  fase bench pairs rain.aabt --engine structures --json\n"
         "\nA frame's time is the processor time to update all boxes and to find all pairs, with one thread.\n"
         "Engines alternate every few frames in one run. The first frame is not timed; its pairs are compared with\n"
         "those of a plain sweep.\n"

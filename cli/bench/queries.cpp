@@ -132,7 +132,7 @@ void add_bench_queries(Command& group, CommandRegistry& registry) {
     add_json(command, bench.json);
     command.set_footer(
         "\nExamples:\n"
-        "  fase bench queries --scene static --contender wide_bvh,embree\n"
+        "  fase bench queries --scene static --contender wide_bvh,dynamic_bvh\n"
         "  fase bench queries --scene level --mesh building.obj --json\n"
         "\nAll contenders alternate in one run, so that noise of the machine affects all of them. Processor time is\n"
         "measured. In the scene pile all boxes move in each frame, and the updates are included. Before the timing,\n"

@@ -16,6 +16,25 @@ protected:
     }
 };
 
+TEST_F(BenchQueries, TheContendersOfTheHelpExist) {
+    const std::string help = run_fase({"bench", "queries", "--help"}).out;
+    const std::string mark = "--scene static --contender ";
+    const std::size_t begin = help.find(mark);
+    ASSERT_NE(begin, std::string::npos) << help;
+    const std::string names = help.substr(begin + mark.size(), help.find('\n', begin) - begin - mark.size());
+    EXPECT_EQ(bench({"--scene", "static", "--contender", names}).code, 0) << names;
+}
+
+TEST_F(BenchQueries, TheTraceOfTheHelpOfPairsCanBeGenerated) {
+    const std::string help = run_fase({"bench", "pairs", "--help"}).out, mark = "fase generate ";
+    const std::size_t begin = help.find(mark);
+    ASSERT_NE(begin, std::string::npos) << help;
+    const std::string kind =
+        help.substr(begin + mark.size(), help.find(' ', begin + mark.size()) - begin - mark.size());
+    const TemporaryFolder folder;
+    EXPECT_EQ(run_fase({"generate", kind, "--count", "20", "--frames", "2", "-o", folder / "t.aabt"}).code, 0) << kind;
+}
+
 TEST_F(BenchQueries, PrintsARowForEachKind) {
     const Outcome outcome = bench({"--scene", "static", "--contender", "wide_bvh,dynamic_bvh", "--json"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
