@@ -141,6 +141,13 @@ std::vector<std::string> physics_warnings(const scene::Scene& scene, const scene
     } else if (falls && !is_held && scene.gravity != Vec3{}) {
         warnings.push_back(fmt::format("nothing is static: everything falls for ever; {}", remedy));
     }
+    const bool moves = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const scene::Body& body) {
+        const bool is_moving = body.def.linear_velocity != Vec3{} || body.def.angular_velocity != Vec3{};
+        return body.def.kind == BodyKind::Dynamic || (body.def.kind == BodyKind::Kinematic && is_moving);
+    });
+    if (!moves)
+        warnings.push_back(fmt::format("nothing can move: no dynamic or moving kinematic body; {}",
+                                       made != nullptr ? "let --static match fewer nodes" : "make a body dynamic"));
     const std::size_t skipped = made != nullptr ? made->skipped : 0, flat = made != nullptr ? made->flat : 0;
     if (skipped > 0) warnings.push_back("meshes without a volume or too far away got no collider" + times(skipped));
     warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());

@@ -26,7 +26,8 @@ Result<scene::AutoColliders> add_auto_colliders(scene::Scene& scene, const AutoC
 /// The error for a scene in which nothing has a collider and nothing moves; nullopt for any other.
 [[nodiscard]] std::optional<Error> find_nothing_physical(const scene::Scene& scene, const std::string& name);
 
-/// All warnings about the scene, the worst first: nothing collides, nothing is static, then those of its file.
+/// All warnings about the scene, the worst first: nothing collides, nothing is static, nothing can move, then those of
+/// its file.
 /// @param made the automatic colliders; nullptr: none were requested
 [[nodiscard]] std::vector<std::string> physics_warnings(const scene::Scene& scene, const scene::AutoColliders* made);
 

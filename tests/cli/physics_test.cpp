@@ -53,6 +53,16 @@ TEST(Physics, WarningsComeFirstInTheOrderOfHarm) {
     EXPECT_TRUE(info.out.starts_with("warnings ")) << info.out;
 }
 
+TEST(Physics, ASceneInWhichNothingCanMoveWarns) {
+    const Outcome outcome = run_yard({"--auto-colliders", "box", "--static", "."});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(
+        outcome.out.starts_with("warning    nothing can move: no dynamic or moving kinematic body; "
+                                "let --static match fewer nodes\n"))
+        << outcome.out;
+    EXPECT_EQ(run_yard({"--auto-colliders", "box"}).out.find("nothing can move"), std::string::npos);
+}
+
 TEST(Physics, AutomaticCollidersWithoutEffectAreRefused) {
     const auto refused = [](std::vector<std::string> options, const std::string& words) {
         options.insert(options.begin(), {"run", yard()});
