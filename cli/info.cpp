@@ -218,8 +218,14 @@ Result<Facts> facts_of(const InfoOptions& options) {
         options.file,
         {"info", "scenes (.gltf, .glb), recordings, traces, levels (.wad), .obj meshes and .png images", kinds});
     if (!kind) {
-        const bool unfinished = kind.status() == Status::Io && read_start(options.file + ".part", 1).has_value();
-        return unfinished ? recording_facts(options) : Result<Facts>(kind.error());
+        const std::string part = options.file + ".part";
+        const Result<FileKind> unfinished = kind_of_file(part);
+        if (kind.status() != Status::Io || !unfinished) return kind.error();
+        if (*unfinished != FileKind::Trace) return recording_facts(options);
+        Error error = kind.error();
+        error.problem += fmt::format("; found an unfinished trace {}", part);
+        error.remedy = fmt::format("'fase info {}' describes it", shell_word(part));
+        return error;
     }
     switch (*kind) {
         case FileKind::Recording: return recording_facts(options);

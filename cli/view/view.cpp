@@ -40,7 +40,7 @@ Result<void> check_outputs(const ViewOptions& options, const std::string& input)
 Result<void> check_recording(const std::string& file) {
     static constexpr FileKind kinds[]{FileKind::Recording, FileKind::Other, FileKind::Empty};
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) return {};
+    if (!std::filesystem::exists(file, ignored)) return {};
     const auto checked = check_input(file, {"view", "recordings (.faserec)", kinds});
     return checked ? Result<void>{} : checked.error();
 }

@@ -96,6 +96,15 @@ TEST(InfoOfTraces, PrintsTheContentsAndValidatesTheWholeFile) {
     expect_error_line(run_fase({"info", name}), 2, "frame 1, body 2: found NaN as lower z");
 }
 
+TEST(InfoOfTraces, NamesAnUnfinishedTrace) {
+    const TemporaryFolder folder;
+    const std::string name = folder / "t.aabt";
+    write_trace(name, {{cube_at(0)}}, {0});
+    std::filesystem::rename(name, name + ".part");
+    expect_error_line(run_fase({"info", name}), 3, "found an unfinished trace " + name + ".part; 'fase info ");
+    EXPECT_EQ(run_fase({"info", name + ".part"}).code, 0);
+}
+
 TEST(RunTrace, ContainsTheInitialStateAndEveryStep) {
     const TemporaryFolder folder;
     const std::string name = folder / "t.aabt";

@@ -398,7 +398,8 @@ TEST(View, RefusesOtherFilesAndUnwritablePaths) {
     };
     EXPECT_EQ(code({folder / "text"}), 2);
     EXPECT_EQ(code({folder / "nothing"}), 3);
-    EXPECT_EQ(code({folder.path()}), 3);
+    EXPECT_EQ(code({folder.path()}), 2);
+    EXPECT_EQ(code({"/dev/null"}), 2);
     EXPECT_EQ(code({folder / "run.faserec", "--html", folder.path()}), 3);
     EXPECT_EQ(code({folder / "run.faserec", "--html", folder / "text/page.html"}), 3);
     EXPECT_EQ(code({folder / "run.faserec", "--html", folder / "run.faserec"}), 3);
