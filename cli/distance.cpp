@@ -201,6 +201,7 @@ Result<std::vector<Verdict>> check_file(const std::string& file) {
         }
     });
     if (first_error) return *first_error;
+    if (verdicts.empty()) return bad(*cases, "found no case; expected at least one");
     return verdicts;
 }
 

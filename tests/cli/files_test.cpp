@@ -168,6 +168,13 @@ TEST(Distance, PrintsTheKeysThatScriptsRelyOn) {
     EXPECT_NE(lines.out.find("1 of 1 within tolerance"), std::string::npos) << lines.out;
 }
 
+TEST(Distance, AFileWithoutCasesIsRefused) {
+    const TemporaryFolder folder;
+    write_file(folder / "pairs.json", R"({"cases": []})");
+    expect_error_line(run_fase({"distance", folder / "pairs.json"}), 2,
+                      "pairs.json: byte 11: /cases: found no case; expected at least one");
+}
+
 TEST(Distance, AWrongDistanceGivesExitCode1) {
     const TemporaryFolder folder;
     write_file(folder / "pairs.json", pairs_file(1.5));
