@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -171,7 +172,9 @@ Result<Run> prepare(const RunOptions& options, LoadedScene& loaded) {
     run.summary.requested_steps = *steps;
     if (!options.record.empty()) {
         SceneLook look = look_of(*scene, *ids);
-        if (look.head.title.empty()) look.head.title = printable(options.scene);
+        // Only the file name: recordings are passed on, and folders of this machine do not belong there.
+        if (look.head.title.empty())
+            look.head.title = printable(std::filesystem::path(options.scene).filename().string());
         run.summary.warnings.insert(run.summary.warnings.end(), look.warnings.begin(), look.warnings.end());
         if (auto made_folder = make_folder_of(options.record); !made_folder) return made_folder.error();
         Result<record::Recorder> recorder = record::Recorder::create(
