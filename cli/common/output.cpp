@@ -153,6 +153,7 @@ void guard_standard_streams() {
             (void)::open("/dev/null", stream == 0 ? O_RDONLY : O_WRONLY);
     }
     ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
 }
 
 int finish_output(int code) {

@@ -30,8 +30,8 @@ void print_line(std::string_view sort, std::string_view text);
 /// Prints `fase: error: WHERE: PROBLEM; REMEDY` as one line on stderr and returns the exit code.
 int refuse(const Error& error);
 
-/// Opens /dev/null for standard streams that are closed, so that no other file gets their descriptors. Ignores SIGPIPE:
-/// a write to a closed pipe fails instead of ending the program.
+/// Opens /dev/null for standard streams that are closed, so that no other file gets their descriptors. Ignores SIGPIPE
+/// and SIGXFSZ: a write to a closed pipe or beyond the limit of file sizes fails instead of ending the program.
 void guard_standard_streams();
 
 /// Flushes stdout and returns `code`. If the flush fails: 141 (the reader closed the pipe), or exit_io with an error

@@ -60,8 +60,10 @@ Result<GeneratedTrace> generate_trace(std::string_view kind, const TraceSettings
         boxes.clear();
         for (const TraceBody& body : state.bodies) boxes.push_back({body.centre - body.half, body.centre + body.half});
         if (Result<void> added = writer->add_frame(boxes); !added) {
+            Error error = added.error();
+            if (error.where == writer->path()) error.where = file;  // the part is gone
             writer->discard();
-            return added.error();
+            return error;
         }
     }
     if (Result<void> finished = writer->finish(flags); !finished) return finished.error();

@@ -48,7 +48,12 @@ TEST(GenerateTrace, AFullDiskIsReportedWithTheWrittenAmount) {
     const TemporaryFolder folder;
     const Outcome outcome =
         RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"", {"generate", "rain", "-o", folder / "r.aabt"}).wait();
-    expect_error_line(outcome, 3, "wrote 0 frames");
+    expect_error_line(outcome, 3, "r.aabt: cannot write: ");
+    EXPECT_NE(outcome.err.find("wrote 0 frames"), std::string::npos) << outcome.err;
+    expect_error_line(RunningFase::by_shell("ulimit -f 64; exec \"$0\" \"$@\"",
+                                            {"generate", "pile", "--count", "2000", "-o", folder / "p.glb"})
+                          .wait(),
+                      3, "p.glb: cannot write: File too large");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -87,7 +87,7 @@ public:
     }
 
 private:
-    static constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
+    static constexpr std::array<int, 4> signals{SIGINT, SIGTERM, SIGHUP, SIGALRM};
     sigset_t blocked_, before_;
 };
 

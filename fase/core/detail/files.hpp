@@ -24,7 +24,8 @@ Result<FileStart> read_start(const std::string& path, std::size_t count);
 
 /// Writes a file atomically: readers see the old bytes or all new ones, never a part. Writes a temporary file in the
 /// same folder and renames it at the end. Writes to a device or pipe directly. Io with the path on any failure; the
-/// temporary file is removed then, and when SIGINT, SIGTERM or SIGHUP arrives: the signal is delivered after that.
+/// temporary file is removed then, and when SIGINT, SIGTERM, SIGHUP or SIGALRM arrives: the signal is delivered after
+/// that.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
 
 /// Returns the folder of a path: "a/b.gltf" -> "a", "b.gltf" -> ".".

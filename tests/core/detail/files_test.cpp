@@ -2,10 +2,13 @@
 #include "fase/core/detail/files.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 
 #include "tests/scene/support.hpp"
 
@@ -23,6 +26,22 @@ TEST(Files, ReadsARegularFile) {
     EXPECT_EQ(read_file(folder / "a", 4).status(), Status::Format);
     EXPECT_EQ(read_start(folder / "a", 2)->bytes, test::bytes_of("he"));
     EXPECT_EQ(read_start(folder / "a", 2)->size, 5u);
+}
+
+TEST(Files, ASignalThatEndsAProgramStopsAWriteWithoutALeftover) {
+    const TemporaryFolder folder;
+    const std::vector<std::byte> bytes(std::size_t(1) << 28);
+    struct sigaction before {
+    }, quiet{};
+    quiet.sa_handler = [](int) {};
+    ::sigaction(SIGALRM, &quiet, &before);
+    const itimerval often{{0, 1000}, {0, 1000}}, never{};
+    ::setitimer(ITIMER_REAL, &often, nullptr);
+    const Result<void> written = write_file(folder / "large", bytes);
+    ::setitimer(ITIMER_REAL, &never, nullptr);
+    ::sigaction(SIGALRM, &before, nullptr);
+    EXPECT_EQ(written.status(), Status::Io);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(Files, RefusesPipesFoldersAndDevices) {
