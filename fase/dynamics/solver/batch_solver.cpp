@@ -13,6 +13,9 @@ constexpr std::size_t body_grain = 256;
 constexpr std::size_t four_grain = 32;
 constexpr std::size_t block_grain = 24;
 constexpr std::size_t prefetch_ahead = 6, fours_ahead = 2;  // manifolds
+// Lanes are filled four at a time, in the order of the blocks. When so many manifolds do not fit the cache, that order
+// costs more than it saves: then one at a time, in the order of the constraints.
+constexpr std::size_t max_for_fours = 24'000, contact_grain = 128;
 constexpr int overflow_two_sided = ConstraintColours::count, overflow_one_sided = ConstraintColours::count + 1;
 // The contact frequency as a share of the sub-step rate. One pass per sub-step acts as a spring of about m / h² itself:
 // at an eighth, pyramids vibrate.
@@ -95,6 +98,12 @@ void BatchSolver::load(const BatchInput& in, TaskRunner& tasks) {
         colours_[slots_[i].colour].restitution |= manifold(i).restitution > 0;
     }
     prepare_blocks(in.batch.unused_row());
+    if (slots_.size() > max_for_fours) {
+        for_each_slot(in, tasks, [&](const Lane& lane, std::uint32_t number, ContactManifold& m) {
+            fill_lane(lane, in.constraints[number], m, in.loads[number], in.lanes);
+        });
+        return;
+    }
     list_lanes(in);
     for_each_four(in, tasks, [&](FourLanes& four, const Four& of) {
         const ContactManifold* manifolds[4];
@@ -122,6 +131,21 @@ void BatchSolver::list_lanes(const BatchInput& in) {
         const std::uint32_t number = in.numbers[i];
         users_[first[slots_[i].colour] + slots_[i].index] = {number, in.constraints[number].index, slots_[i].flipped};
     }
+}
+
+template <class F> void BatchSolver::for_each_slot(const BatchInput& in, TaskRunner& tasks, const F& f) {
+    parallel_ranges(tasks, slots_.size(), contact_grain, [&](std::size_t begin, std::size_t end) {
+        const auto manifold = [&](std::size_t i) -> ContactManifold& {
+            return in.manifolds[in.constraints[in.numbers[i]].index];
+        };
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + prefetch_ahead < end) detail::prefetch(manifold(i + prefetch_ahead));
+            const Slot& slot = slots_[i];
+            f({&colours_[slot.colour].blocks[slot.index / block_lanes], static_cast<int>(slot.index % block_lanes),
+               slot.flipped},
+              in.numbers[i], manifold(i));
+        }
+    });
 }
 
 template <class F> void BatchSolver::for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f) {
@@ -214,6 +238,12 @@ void BatchSolver::solve_impacts(const BatchInput& in, TaskRunner& tasks) {
 }
 
 void BatchSolver::store(const BatchInput& in, TaskRunner& tasks) {
+    if (slots_.size() > max_for_fours) {
+        for_each_slot(in, tasks, [&](const Lane& lane, std::uint32_t number, ContactManifold& m) {
+            in.results[number] = store_lane(lane, in.constraints[number], m, in.lanes);
+        });
+        return;
+    }
     for_each_four(in, tasks, [&](FourLanes& four, const Four& of) {
         if (of.all) {
             ContactResult* results[4];

@@ -80,6 +80,8 @@ private:
         bool all = true;  ///< no lane is unused
     };
     void list_lanes(const BatchInput& in);
+    /// Calls f(Lane, number, manifold) for all constraints, in parallel.
+    template <class F> void for_each_slot(const BatchInput& in, TaskRunner& tasks, const F& f);
     /// Calls f(FourLanes&, Four) for all blocks, in parallel.
     template <class F> void for_each_four(const BatchInput& in, TaskRunner& tasks, const F& f);
     void load(const BatchInput& in, TaskRunner& tasks);
