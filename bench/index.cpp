@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
+#include "bench/split_list.hpp"
 #include "bench/timing.hpp"
 #include "fase/core/random.hpp"
 
@@ -20,10 +21,6 @@ constexpr std::array<std::string_view, index_questions> names{
 constexpr double area_of_a_unit = 31.25;  // m²
 constexpr float stride = 0.2f;            // of a unit in a round, at most, in x and in z
 constexpr std::uint64_t brute_force_tests = 40'000'000;
-
-double elapsed_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 constexpr std::size_t number_of(IndexQuestion question) { return static_cast<std::size_t>(question); }
 
@@ -178,13 +175,13 @@ void run_round(IndexEntry& entry, const IndexWorld& world, ExpectedAnswers& expe
         if (!is_asked(question) || !entry.offers(question)) continue;
         answer.tally = {};
         answer.hits.clear();
-        const double begin = entry.threads == 1 ? cpu_ms() : elapsed_ms();
+        const double begin = entry.threads == 1 ? cpu_ms() : wall_ms();
         if (question == IndexQuestion::Moves) {
             entry.contender->move(world.units);
         } else {
             ask(*entry.contender, world.questions, question, answer);
         }
-        ms[q] = (entry.threads == 1 ? cpu_ms() : elapsed_ms()) - begin;
+        ms[q] = (entry.threads == 1 ? cpu_ms() : wall_ms()) - begin;
         if (question != IndexQuestion::Moves) expected.compare(entry, question, answer);
     }
     ms[number_of(IndexQuestion::Frame)] =
@@ -202,36 +199,33 @@ IndexRow row_of(const IndexEntry& entry, const IndexOptions& options, std::size_
     row.units = options.units;
     row.threads = entry.threads;
     row.rounds = options.rounds;
-    std::vector<double> sorted = entry.times[q];
-    std::sort(sorted.begin(), sorted.end());
-    row.median_ms = median_of(sorted);
-    if (!sorted.empty()) {
-        row.low_ms = sorted[sorted.size() / 10];
-        row.high_ms = sorted[sorted.size() - 1 - sorted.size() / 10];
-        row.worst_ms = sorted.back();
-    }
+    const Timing ms = timing_of(entry.times[q]);
+    row.median_ms = ms.median;
+    row.worst_ms = ms.worst;
+    std::tie(row.low_ms, row.high_ms) = tenths_of(entry.times[q]);
     row.found = entry.found[q];
     row.compared = entry.compared[q];
     row.differ = entry.differ[q];
     return row;
 }
 
+/// Returns the contenders for "all" or a list like "index,flat_grid", in the order of THE list.
 Result<std::vector<const IndexContenderInfo*>> contenders_of(const std::string& list) {
-    std::vector<const IndexContenderInfo*> chosen;
     const auto all = index_contenders();
-    for (std::size_t begin = 0; begin <= list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        const std::string name = list.substr(begin, end - begin);
-        begin = end + 1;
-        const std::size_t before = chosen.size();
-        for (const IndexContenderInfo& info : all)
-            if (name == "all" || name == info.name) chosen.push_back(&info);
-        if (chosen.size() > before) continue;
-        std::string known = "all";
-        for (const IndexContenderInfo& info : all) known += ", " + std::string(info.name);
+    std::vector<bool> selected(all.size(), false);
+    for (const std::string& name : split_list(list)) {
+        bool known = name == "all";
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (name == "all" || name == all[i].name) selected[i] = known = true;
+        if (known) continue;
+        std::string names = "all";
+        for (const IndexContenderInfo& info : all) names += ", " + std::string(info.name);
         return Error{
-            Status::BadArgument, "--contender", fmt::format("found \"{}\"; expected one of {}", name, known), {}};
+            Status::BadArgument, "--contender", fmt::format("found \"{}\"; expected one of {}", name, names), {}};
     }
+    std::vector<const IndexContenderInfo*> chosen;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (selected[i]) chosen.push_back(&all[i]);
     return chosen;
 }
 

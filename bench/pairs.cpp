@@ -2,12 +2,14 @@
 #include "bench/pairs.hpp"
 
 #include <fmt/format.h>
+#include <tuple>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "bench/pair_engine.hpp"
+#include "bench/split_list.hpp"
 #include "fase/broad/search/pair_hash.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/hash.hpp"
@@ -24,9 +26,7 @@ constexpr std::uint64_t frames_per_turn = 6;
 Result<std::vector<const PairEngineInfo*>> engines_named(const std::string& names) {
     const std::vector<PairEngineInfo>& all = pair_engines();
     std::vector<bool> selected(all.size(), false);
-    for (std::size_t begin = 0; begin <= names.size();) {
-        const std::size_t end = std::min(names.find(',', begin), names.size());
-        const std::string name = names.substr(begin, end - begin);
+    for (const std::string& name : split_list(names)) {
         bool known = name == "all" || name == "peers" || name == "structures";
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (name != "all" && name != all[i].name && name != (all[i].peer ? "peers" : "structures")) continue;
@@ -40,7 +40,6 @@ Result<std::vector<const PairEngineInfo*>> engines_named(const std::string& name
                          fmt::format("found \"{}\"; expected one of {}", name, known_names),
                          {}};
         }
-        begin = end + 1;
     }
     std::vector<const PairEngineInfo*> chosen;
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -127,12 +126,7 @@ void summarise(Contender& contender) {
     PairBenchRow& row = contender.row;
     row.frames = contender.times.size();
     row.ms = timing_of(contender.times);
-    std::vector<double> sorted = contender.times;
-    std::sort(sorted.begin(), sorted.end());
-    if (!sorted.empty()) {
-        row.low = sorted[sorted.size() / 10];
-        row.high = sorted[sorted.size() - 1 - sorted.size() / 10];
-    }
+    std::tie(row.low, row.high) = tenths_of(contender.times);
     row.hash = contender.hash.value();
     row.settings = contender.engine->settings();
     row.bytes = contender.engine->bytes();

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "bench/split_list.hpp"
 #include "bench/timing.hpp"
 #include "fase/core/hash.hpp"
 
@@ -115,9 +116,7 @@ Result<std::vector<const QueryContenderInfo*>> contenders_named(const std::strin
         for (const QueryContenderInfo& info : query_contenders()) chosen.push_back(&info);
         return chosen;
     }
-    for (std::size_t begin = 0; begin <= names.size();) {
-        const std::size_t end = std::min(names.find(',', begin), names.size());
-        const std::string name = names.substr(begin, end - begin);
+    for (const std::string& name : split_list(names)) {
         const auto all = query_contenders();
         const auto found = std::find_if(all.begin(), all.end(), [&](const auto& info) { return info.name == name; });
         if (found == all.end()) {
@@ -126,7 +125,6 @@ Result<std::vector<const QueryContenderInfo*>> contenders_named(const std::strin
             return unknown_name("--contender", name, known);
         }
         chosen.push_back(&*found);
-        begin = end + 1;
     }
     return chosen;
 }

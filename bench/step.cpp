@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 
 #include "bench/engine.hpp"
+#include "bench/split_list.hpp"
 #include "fase/scene/generate.hpp"
 
 namespace fase::bench {
@@ -31,14 +31,11 @@ Error unknown_name(const char* option, const std::string& found, const List& lis
 /// Returns the engines for "all" or a list like "fase,bullet", in the order of THE list.
 Result<std::vector<const EngineInfo*>> engines_named(const std::string& names) {
     std::vector<bool> selected(engines().size(), names == "all");
-    for (std::size_t begin = 0; names != "all" && begin <= names.size();) {
-        const std::size_t end = std::min(names.find(',', begin), names.size());
-        const std::string name = names.substr(begin, end - begin);
+    for (const std::string& name : names == "all" ? std::vector<std::string>() : split_list(names)) {
         const auto engine =
             std::find_if(engines().begin(), engines().end(), [&](const EngineInfo& one) { return one.name == name; });
         if (engine == engines().end()) return unknown_name("--engine", name, engines(), "all");
         selected[static_cast<std::size_t>(engine - engines().begin())] = true;
-        begin = end + 1;
     }
     std::vector<const EngineInfo*> chosen;
     for (std::size_t i = 0; i < selected.size(); ++i) {
@@ -64,15 +61,14 @@ struct Run {
 };
 
 Result<void> run_turn(Run& run, Contender& contender, std::uint64_t steps) {
-    using Clock = std::chrono::steady_clock;
     for (std::uint64_t i = 0; i < steps; ++i) {
         if (!run.progress(run.done++, run.total, contender.row.scene, contender.row.engine)) {
             run.stopped = true;
             return {};
         }
-        const Clock::time_point begin = Clock::now();
+        const double begin = wall_ms();
         if (auto stepped = contender.engine->step(); !stepped) return stepped.error();
-        contender.ms.back().push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+        contender.ms.back().push_back(wall_ms() - begin);
     }
     return {};
 }

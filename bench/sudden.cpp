@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "bench/split_list.hpp"
 #include "fase/broad/search/pair_hash.hpp"
 #include "fase/broad/search/plain_sweep.hpp"
 #include "fase/core/random.hpp"
@@ -180,13 +181,10 @@ Result<std::vector<SuddenRow>> measure_sudden(const SuddenOptions& options, cons
     if (options.boxes < 2 * movers)
         return Error{Status::BadArgument, "--count",
                      fmt::format("found {}; expected at least {}", options.boxes, 2 * movers), ""};
-    std::vector<std::string> names;
-    for (std::size_t begin = 0; begin <= options.structures.size();) {
-        const std::size_t end = std::min(options.structures.find(',', begin), options.structures.size());
-        names.push_back(options.structures.substr(begin, end - begin));
-        begin = end + 1;
-        if (names.back() == "auto") continue;
-        if (const auto known = broad::AnyStructure::named(names.back()); !known) {
+    const std::vector<std::string> names = split_list(options.structures);
+    for (const std::string& name : names) {
+        if (name == "auto") continue;
+        if (const auto known = broad::AnyStructure::named(name); !known) {
             Error error = known.error();
             error.where = "--structure";
             return error;

@@ -67,6 +67,17 @@ PAIR_ENGINES = {"row_grid": ("Fase row_grid", svg.BLUE), "fcl_dynamic_tree": ("F
                 "bullet_dbvt_deferred": ("Bullet DBVT", svg.VERMILION)}
 
 
+def log_bars(canvas, height, groups, series, limits, axis):
+    """Completes a chart of grouped bars on a logarithmic axis. `series`: {name: (label, colour)}; `limits`: lowest and highest decade."""
+    low, high = limits
+    canvas.legend(series.values())
+    scale = svg.LogScale(low, high * 1.6, 160, svg.WIDTH - 40)
+    canvas.vertical_grid(scale, 82, height - 50, svg.tick)
+    grouped_bars(canvas, groups, {name: colour for name, (_, colour) in series.items()}, scale, 90)
+    canvas.text((160 + svg.WIDTH - 40) / 2, height - 14, axis, anchor="middle")
+    return canvas.finish()
+
+
 def pairs_chart(path):
     rows = last_rows(path, "machine", "trace", "engine")
     time = {(row["trace"], row["engine"]): float(row["median_ms"]) for row in rows}
@@ -78,12 +89,7 @@ def pairs_chart(path):
     low, high = decades([value for _, _, values in groups for value in values.values()])
     height = 90 + sum(BAR * len(values) + GAP for _, _, values in groups) + 45
     canvas = svg.Canvas(height, "Time to find all pairs in a frame", f"median, 1 thread, {rows[0]['machine']}; shorter is better")
-    canvas.legend(PAIR_ENGINES.values())
-    scale = svg.LogScale(low, high * 1.6, 160, svg.WIDTH - 40)
-    canvas.vertical_grid(scale, 82, height - 50, svg.tick)
-    grouped_bars(canvas, groups, {engine: colour for engine, (_, colour) in PAIR_ENGINES.items()}, scale, 90)
-    canvas.text((160 + svg.WIDTH - 40) / 2, height - 14, "milliseconds per frame (logarithmic)", anchor="middle")
-    return canvas.finish()
+    return log_bars(canvas, height, groups, PAIR_ENGINES, (low, high), "milliseconds per frame (logarithmic)")
 
 
 SIZE_COLOURS = {"auto": svg.BLUE, "auto, 2 threads": svg.SKY, "auto, changes": svg.NAVY, "wide_bvh": svg.GREEN,
@@ -270,12 +276,7 @@ def index_chart(path):
     height = 90 + sum(BAR * max(len(values), 2) + GAP for _, _, values in groups) + 45
     canvas = svg.Canvas(height, "An index of many moving units",
                         f"{int(rows[0]['units']):,} units, median, 1 thread, {rows[0]['machine']}; shorter is better")
-    canvas.legend(INDEX_CONTENDERS.values())
-    scale = svg.LogScale(low, high * 1.6, 160, svg.WIDTH - 40)
-    canvas.vertical_grid(scale, 82, height - 50, svg.tick)
-    grouped_bars(canvas, groups, {name: colour for name, (_, colour) in INDEX_CONTENDERS.items()}, scale, 90)
-    canvas.text((160 + svg.WIDTH - 40) / 2, height - 14, "milliseconds (logarithmic)", anchor="middle")
-    return canvas.finish()
+    return log_bars(canvas, height, groups, INDEX_CONTENDERS, (low, high), "milliseconds (logarithmic)")
 
 
 # Name of the SVG file, the CSV file, and the function that draws it, in the order of the page.

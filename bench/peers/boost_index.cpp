@@ -1,25 +1,18 @@
 /// Boost's R-tree in `fase bench index`.
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #include <boost/version.hpp>
 #include <cmath>
 #include <utility>
 
 #include "bench/index_contender.hpp"
+#include "bench/peers/boost_tree.hpp"
 #include "fase/query/detail/near_pairs.hpp"
 
 namespace fase::bench {
 namespace {
 
-namespace bg = boost::geometry;
-using Point = bg::model::point<float, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-using Entry = std::pair<Box, std::uint32_t>;
+using namespace boost_tree;
 using Tree = bg::index::rtree<Entry, bg::index::rstar<16>>;
-
-Point to_boost(Vec3 v) { return {v.x, v.y, v.z}; }
-Box to_boost(const Aabb& box) { return {to_boost(box.lo), to_boost(box.hi)}; }
 
 /// Packs the tree again in each frame, which is far faster than removing and inserting all boxes. Finds neighbours with
 /// one query for each box.

@@ -1,21 +1,15 @@
 /// Boost's R-tree in `fase bench pairs`.
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #include <boost/version.hpp>
 
 #include "bench/pair_engine.hpp"
+#include "bench/peers/boost_tree.hpp"
 
 namespace fase::bench {
 namespace {
 
-namespace bg = boost::geometry;
-using Point = bg::model::point<float, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-using Entry = std::pair<Box, broad::Proxy>;
+using namespace boost_tree;
 using Tree = bg::index::rtree<Entry, bg::index::rstar<16>>;
-
-Box to_boost(const Aabb& box) { return {Point(box.lo.x, box.lo.y, box.lo.z), Point(box.hi.x, box.hi.y, box.hi.z)}; }
 
 /// Packs the tree again in each frame, which is far faster than removing and inserting the moved boxes; then queries
 /// the tree once per box.

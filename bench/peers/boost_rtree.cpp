@@ -2,20 +2,15 @@
 #include "bench/peers/boost_rtree.hpp"
 
 #include <boost/function_output_iterator.hpp>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <boost/version.hpp>
 #include <utility>
+
+#include "bench/peers/boost_tree.hpp"
 
 namespace fase::bench {
 namespace {
 
-namespace bg = boost::geometry;
-using Point = bg::model::point<float, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-using Entry = std::pair<Box, broad::Proxy>;
-
-Box to_boost(const Aabb& box) { return {Point(box.lo.x, box.lo.y, box.lo.z), Point(box.hi.x, box.hi.y, box.hi.z)}; }
+using namespace boost_tree;
 
 class BoostRtree final : public QueryContender {
 public:

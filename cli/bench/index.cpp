@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
-#include "bench/table_file.hpp"
+#include "cli/bench/rows.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
@@ -63,29 +64,24 @@ std::string to_table(const std::vector<IndexRow>& rows) {
 }
 
 Result<void> save(const std::string& file, const std::vector<IndexRow>& rows) {
-    const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const IndexRow& row : rows)
         if (row.differ == 0)
-            lines.push_back({origin.date, origin.commit, origin.machine, row.question, row.contender, row.settings,
-                             std::to_string(row.units), std::to_string(row.threads), std::to_string(row.rounds),
+            lines.push_back({row.question, row.contender, row.settings, std::to_string(row.units),
+                             std::to_string(row.threads), std::to_string(row.rounds),
                              fmt::format("{:.4f}", row.median_ms), fmt::format("{:.4f}", row.low_ms),
                              fmt::format("{:.4f}", row.high_ms), fmt::format("{:.4f}", row.worst_ms),
                              std::to_string(row.found), std::to_string(row.compared)});
-    static const std::vector<std::string> columns{"date",     "commit",  "machine",  "question", "contender",
-                                                  "settings", "units",   "threads",  "rounds",   "median_ms",
-                                                  "low_ms",   "high_ms", "worst_ms", "found",    "compared"};
-    if (lines.empty()) return {};
-    if (auto made = make_folder_of(file); !made) return made;
-    return bench::append_to_table(file, columns, lines);
+    static const std::vector<std::string> columns{"question", "contender", "settings",  "units",
+                                                  "threads",  "rounds",    "median_ms", "low_ms",
+                                                  "high_ms",  "worst_ms",  "found",     "compared"};
+    return append_rows(file, columns, std::move(lines));
 }
 
 }  // namespace
 
 int run_bench_index(const BenchIndexOptions& options) {
-    if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
-    }
+    if (auto writable = check_csv(options.csv); !writable) return refuse(writable.error());
     const Interrupts interrupts;
     std::optional<Progress> progress;
     const auto report = [&](std::uint64_t done, std::uint64_t total, std::string_view contender) {
@@ -96,14 +92,10 @@ int run_bench_index(const BenchIndexOptions& options) {
     const auto rows = bench::measure_index(options, report);
     progress.reset();
     if (!rows) return refuse(rows.error());
-    if (!options.csv.empty()) {
-        if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
-    }
+    if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
     const std::string text = options.json ? to_json(*rows) : to_table(*rows);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_right = std::all_of(rows->begin(), rows->end(), [](const IndexRow& row) { return row.differ == 0; });
-    return all_right ? exit_ok : exit_check_failed;
+    return print_rows(text, all_right);
 }
 
 void add_bench_index(Command& group, CommandRegistry& registry) {

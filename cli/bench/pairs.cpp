@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "bench/pair_engine.hpp"
-#include "bench/table_file.hpp"
+#include "cli/bench/rows.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/input.hpp"
@@ -72,32 +73,26 @@ std::string to_table(const std::vector<PairBenchRow>& rows) {
 }
 
 Result<void> save(const std::string& file, const std::vector<PairBenchRow>& rows) {
-    const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const PairBenchRow& row : rows) {
         if (!is_timed(row)) continue;
-        lines.push_back({origin.date, origin.commit, origin.machine, row.trace, row.engine, row.settings,
-                         std::to_string(row.boxes), std::to_string(row.static_count), std::to_string(row.asleep_count),
-                         std::to_string(row.frames), fmt::format("{:.4f}", row.ms.median),
-                         fmt::format("{:.4f}", row.low), fmt::format("{:.4f}", row.high),
-                         fmt::format("{:.4f}", row.ms.mean), fmt::format("{:.4f}", row.ms.worst),
-                         fmt::format("{:.4f}", row.build_ms), std::to_string(row.pairs),
-                         fmt::format("{:016x}", row.hash), row.bytes == 0 ? "" : std::to_string(row.bytes)});
+        lines.push_back(
+            {row.trace, row.engine, row.settings, std::to_string(row.boxes), std::to_string(row.static_count),
+             std::to_string(row.asleep_count), std::to_string(row.frames), fmt::format("{:.4f}", row.ms.median),
+             fmt::format("{:.4f}", row.low), fmt::format("{:.4f}", row.high), fmt::format("{:.4f}", row.ms.mean),
+             fmt::format("{:.4f}", row.ms.worst), fmt::format("{:.4f}", row.build_ms), std::to_string(row.pairs),
+             fmt::format("{:016x}", row.hash), row.bytes == 0 ? "" : std::to_string(row.bytes)});
     }
-    static const std::vector<std::string> columns{
-        "date",      "commit", "machine", "trace",   "engine",   "settings", "boxes", "static", "asleep", "frames",
-        "median_ms", "low_ms", "high_ms", "mean_ms", "worst_ms", "build_ms", "pairs", "hash",   "bytes"};
-    if (lines.empty()) return {};
-    if (auto made = make_folder_of(file); !made) return made;
-    return bench::append_to_table(file, columns, lines);
+    static const std::vector<std::string> columns{"trace",    "engine",    "settings", "boxes",   "static",  "asleep",
+                                                  "frames",   "median_ms", "low_ms",   "high_ms", "mean_ms", "worst_ms",
+                                                  "build_ms", "pairs",     "hash",     "bytes"};
+    return append_rows(file, columns, std::move(lines));
 }
 
 }  // namespace
 
 int run_bench_pairs(const BenchPairsOptions& options) {
-    if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
-    }
+    if (auto writable = check_csv(options.csv); !writable) return refuse(writable.error());
     for (const std::string& trace : options.traces)
         if (auto checked = check_input(trace, {"bench pairs", input::traces, input::trace_kinds}); !checked)
             return refuse(checked.error());
@@ -115,16 +110,12 @@ int run_bench_pairs(const BenchPairsOptions& options) {
         };
         const auto measured = bench::measure_pair_engines(trace, options, report);
         if (!measured) return refuse(measured.error());
-        if (!options.csv.empty()) {
-            if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
-        }
+        if (auto saved = save(options.csv, *measured); !saved) return refuse(saved.error());
         rows.insert(rows.end(), measured->begin(), measured->end());
     }
     const std::string text = options.json ? to_json(rows) : to_table(rows);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_correct = std::all_of(rows.begin(), rows.end(), [](const PairBenchRow& row) { return row.correct; });
-    return all_correct ? exit_ok : exit_check_failed;
+    return print_rows(text, all_correct);
 }
 
 void add_bench_pairs(Command& group, CommandRegistry& registry) {

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
-#include "bench/table_file.hpp"
+#include "cli/bench/rows.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/input.hpp"
@@ -48,22 +49,18 @@ std::string to_table(const std::vector<bench::QueryRow>& rows) {
 }
 
 Result<void> save(const std::string& file, const std::vector<bench::QueryRow>& rows) {
-    if (file.empty() || rows.empty()) return {};
-    const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const bench::QueryRow& row : rows) {
-        lines.push_back({origin.date, origin.commit, origin.machine, row.scene, row.contender, row.settings, row.kind,
-                         std::to_string(row.items), std::to_string(row.rounds), std::to_string(row.queries),
-                         fmt::format("{:.1f}", row.per_second), fmt::format("{:.1f}", row.low),
-                         fmt::format("{:.1f}", row.high), std::to_string(row.hits), std::to_string(row.compared),
-                         std::to_string(row.differ), fmt::format("{:.2f}", row.build_ms),
+        lines.push_back({row.scene, row.contender, row.settings, row.kind, std::to_string(row.items),
+                         std::to_string(row.rounds), std::to_string(row.queries), fmt::format("{:.1f}", row.per_second),
+                         fmt::format("{:.1f}", row.low), fmt::format("{:.1f}", row.high), std::to_string(row.hits),
+                         std::to_string(row.compared), std::to_string(row.differ), fmt::format("{:.2f}", row.build_ms),
                          row.bytes == 0 ? "" : std::to_string(row.bytes)});
     }
-    static const std::vector<std::string> columns{"date", "commit", "machine",  "scene",  "contender",  "settings",
-                                                  "kind", "things", "rounds",   "asked",  "per_second", "low",
-                                                  "high", "hits",   "compared", "differ", "build_ms",   "bytes"};
-    if (auto made = make_folder_of(file); !made) return made;
-    return bench::append_to_table(file, columns, lines);
+    static const std::vector<std::string> columns{"scene",  "contender", "settings",   "kind",     "things",
+                                                  "rounds", "asked",     "per_second", "low",      "high",
+                                                  "hits",   "compared",  "differ",     "build_ms", "bytes"};
+    return append_rows(file, columns, std::move(lines));
 }
 
 /// Structures of the registry must give identical answers; other libraries may round differently.
@@ -82,9 +79,7 @@ int run_bench_queries(const BenchQueriesOptions& options) {
     for (const std::string& mesh : options.meshes)
         if (auto checked = check_input(mesh, {"bench queries --mesh", "OBJ meshes", mesh_kinds}); !checked)
             return refuse(checked.error());
-    if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
-    }
+    if (auto writable = check_csv(options.csv); !writable) return refuse(writable.error());
     const Result<std::vector<bench::QueryScene>> scenes = bench::query_scenes(options);
     if (!scenes) return refuse(scenes.error());
     const Interrupts interrupts;
@@ -104,9 +99,7 @@ int run_bench_queries(const BenchQueriesOptions& options) {
         if (Interrupts::signal() != 0) break;
     }
     const std::string text = options.json ? to_json(rows) : to_table(rows);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
-    return std::any_of(rows.begin(), rows.end(), is_wrong) ? exit_check_failed : exit_ok;
+    return print_rows(text, std::none_of(rows.begin(), rows.end(), is_wrong));
 }
 
 void add_bench_queries(Command& group, CommandRegistry& registry) {

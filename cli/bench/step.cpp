@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "bench/engine.hpp"
-#include "bench/table_file.hpp"
+#include "cli/bench/rows.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
@@ -81,46 +82,27 @@ std::string to_table(const std::vector<bench::StepRow>& rows, bool show_hash) {
 }
 
 Result<void> save(const std::string& file, const std::vector<bench::StepRow>& rows) {
-    if (file.empty() || rows.empty()) return {};
-    const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const bench::StepRow& row : rows) {
-        lines.push_back({origin.date,
-                         origin.commit,
-                         origin.machine,
-                         row.scene,
-                         row.engine,
-                         row.settings,
-                         fmt::format("{}", row.threads),
-                         fmt::format("{}", row.steps),
-                         fmt::format("{}", row.rounds),
-                         fmt::format("{:.4f}", row.ms.mean),
-                         fmt::format("{:.4f}", row.ms.median),
-                         fmt::format("{:.4f}", row.ms.worst),
-                         fmt::format("{:.4f}", row.min_ms),
-                         fmt::format("{:.4f}", row.mean_low),
-                         fmt::format("{:.4f}", row.mean_high),
-                         fmt::format("{}", row.bodies),
-                         fmt::format("{}", row.contacts),
-                         hash_text(row),
-                         fmt::format("{:.4f}", row.top_height),
-                         fmt::format("{:.4f}", row.mean_height),
-                         fmt::format("{:.4f}", row.drift)});
+        lines.push_back(
+            {row.scene, row.engine, row.settings, fmt::format("{}", row.threads), fmt::format("{}", row.steps),
+             fmt::format("{}", row.rounds), fmt::format("{:.4f}", row.ms.mean), fmt::format("{:.4f}", row.ms.median),
+             fmt::format("{:.4f}", row.ms.worst), fmt::format("{:.4f}", row.min_ms),
+             fmt::format("{:.4f}", row.mean_low), fmt::format("{:.4f}", row.mean_high), fmt::format("{}", row.bodies),
+             fmt::format("{}", row.contacts), hash_text(row), fmt::format("{:.4f}", row.top_height),
+             fmt::format("{:.4f}", row.mean_height), fmt::format("{:.4f}", row.drift)});
     }
-    static const std::vector<std::string> columns{
-        "date",         "commit", "machine",  "scene",     "engine",     "settings",    "threads",
-        "steps",        "rounds", "mean_ms",  "median_ms", "worst_ms",   "min_ms",      "mean_ms_low",
-        "mean_ms_high", "bodies", "contacts", "hash",      "top_height", "mean_height", "drift"};
-    if (auto made = make_folder_of(file); !made) return made;
-    return bench::append_to_table(file, columns, lines);
+    static const std::vector<std::string> columns{"scene",       "engine",       "settings",  "threads",  "steps",
+                                                  "rounds",      "mean_ms",      "median_ms", "worst_ms", "min_ms",
+                                                  "mean_ms_low", "mean_ms_high", "bodies",    "contacts", "hash",
+                                                  "top_height",  "mean_height",  "drift"};
+    return append_rows(file, columns, std::move(lines));
 }
 
 }  // namespace
 
 int run_bench_step(const BenchStepOptions& options) {
-    if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
-    }
+    if (auto writable = check_csv(options.csv); !writable) return refuse(writable.error());
     const Interrupts interrupts;
     std::vector<bench::StepRow> rows;
     std::vector<std::string> scenes;
@@ -145,11 +127,9 @@ int run_bench_step(const BenchStepOptions& options) {
         rows.insert(rows.end(), measured->begin(), measured->end());
     }
     const std::string text = options.json ? to_json(rows) : to_table(rows, options.hash);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_repeat =
         std::all_of(rows.begin(), rows.end(), [](const bench::StepRow& row) { return row.repeats || !row.hash; });
-    return all_repeat ? exit_ok : exit_check_failed;
+    return print_rows(text, all_repeat);
 }
 
 void add_bench_step(Command& group, CommandRegistry& registry) {

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
-#include "bench/table_file.hpp"
+#include "cli/bench/rows.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
 #include "cli/common/interrupt.hpp"
@@ -54,29 +55,22 @@ std::string to_table(const std::vector<SuddenRow>& rows) {
 }
 
 Result<void> save(const std::string& file, const std::vector<SuddenRow>& rows) {
-    const bench::Origin origin = bench::origin_of_figures();
     std::vector<std::vector<std::string>> lines;
     for (const SuddenRow& row : rows)
         if (row.correct)
-            lines.push_back({origin.date, origin.commit, origin.machine, row.event, row.structure,
-                             std::to_string(row.boxes), std::to_string(row.frames),
+            lines.push_back({row.event, row.structure, std::to_string(row.boxes), std::to_string(row.frames),
                              fmt::format("{:.4f}", row.ms.median), fmt::format("{:.4f}", row.ms.mean),
                              fmt::format("{:.4f}", row.ms.worst), std::to_string(row.worst_frame),
                              fmt::format("{:.4f}", row.build_ms), std::to_string(row.pairs)});
-    static const std::vector<std::string> columns{"date",        "commit",   "machine",   "event",   "structure",
-                                                  "boxes",       "frames",   "median_ms", "mean_ms", "worst_ms",
-                                                  "worst_frame", "build_ms", "pairs"};
-    if (lines.empty()) return {};
-    if (auto made = make_folder_of(file); !made) return made;
-    return bench::append_to_table(file, columns, lines);
+    static const std::vector<std::string> columns{"event",   "structure", "boxes",       "frames",   "median_ms",
+                                                  "mean_ms", "worst_ms",  "worst_frame", "build_ms", "pairs"};
+    return append_rows(file, columns, std::move(lines));
 }
 
 }  // namespace
 
 int run_bench_sudden(const BenchSuddenOptions& options) {
-    if (!options.csv.empty()) {
-        if (auto writable = check_output(options.csv, {output::table}); !writable) return refuse(writable.error());
-    }
+    if (auto writable = check_csv(options.csv); !writable) return refuse(writable.error());
     const Interrupts interrupts;
     std::optional<Progress> progress;
     std::string current;
@@ -91,14 +85,10 @@ int run_bench_sudden(const BenchSuddenOptions& options) {
     const auto rows = bench::measure_sudden(options, report);
     progress.reset();
     if (!rows) return refuse(rows.error());
-    if (!options.csv.empty()) {
-        if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
-    }
+    if (auto saved = save(options.csv, *rows); !saved) return refuse(saved.error());
     const std::string text = options.json ? to_json(*rows) : to_table(*rows);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (Interrupts::signal() != 0) return 128 + Interrupts::signal();
     const bool all_correct = std::all_of(rows->begin(), rows->end(), [](const SuddenRow& row) { return row.correct; });
-    return all_correct ? exit_ok : exit_check_failed;
+    return print_rows(text, all_correct);
 }
 
 void add_bench_sudden(Command& group, CommandRegistry& registry) {

@@ -17,14 +17,14 @@ namespace {
 /// Bodies of which some have no row, in clusters that constraints connect.
 struct Scene {
     std::vector<std::uint32_t> awake;
-    std::vector<std::uint8_t> has_row;
+    std::vector<std::uint32_t> row_of_body;
     std::vector<Constraint> constraints;
     std::vector<std::uint8_t> in_hub;
 
-    Scene(Random& random, std::uint32_t bodies, std::uint32_t cluster, std::size_t count) : has_row(bodies) {
+    Scene(Random& random, std::uint32_t bodies, std::uint32_t cluster, std::size_t count) : row_of_body(bodies) {
         for (std::uint32_t body = 0; body < bodies; ++body)
             if (random.below(10) != 0) {
-                has_row[body] = 1;
+                row_of_body[body] = 1;
                 awake.push_back(body);
             }
         for (std::size_t i = 0; i < count; ++i) {
@@ -34,8 +34,8 @@ struct Scene {
             if (a == b) continue;
             Constraint c{static_cast<std::uint32_t>(i), 0, a, b};
             // A body with a row may still be kinematic: then the constraint moves only the other one.
-            const bool moves_both = has_row[a] && has_row[b] && random.below(5) != 0;
-            c.moves = moves_both ? Moves::Both : has_row[a] ? Moves::A : has_row[b] ? Moves::B : Moves::Neither;
+            const bool moves_both = row_of_body[a] && row_of_body[b] && random.below(5) != 0;
+            c.moves = moves_both ? Moves::Both : row_of_body[a] ? Moves::A : row_of_body[b] ? Moves::B : Moves::Neither;
             c.touches = random.below(2) == 0;
             constraints.push_back(c);
             in_hub.push_back(random.below(4000) == 0 ? 1 : 0);
@@ -43,12 +43,12 @@ struct Scene {
     }
     [[nodiscard]] DisjointSets groups() const {
         DisjointSets sets;
-        sets.reset(has_row.size());
+        sets.reset(row_of_body.size());
         for (const Constraint& c : constraints)
             if (c.touches && c.moves == Moves::Both) sets.unite(c.body_a, c.body_b);
         return sets;
     }
-    [[nodiscard]] Batches::Input input() const { return {awake, constraints, has_row, in_hub}; }
+    [[nodiscard]] Batches::Input input() const { return {awake, constraints, row_of_body, in_hub}; }
 };
 
 void expect_sound(const Scene& scene, const Batches& batches) {
@@ -80,7 +80,7 @@ void expect_sound(const Scene& scene, const Batches& batches) {
     for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
         const Constraint& c = scene.constraints[i];
         EXPECT_EQ(constraints.contains(static_cast<std::uint32_t>(i)), c.moves != Moves::Neither);
-        if (c.moves == Moves::Neither || !scene.has_row[c.body_a] || !scene.has_row[c.body_b]) continue;
+        if (c.moves == Moves::Neither || !scene.row_of_body[c.body_a] || !scene.row_of_body[c.body_b]) continue;
         EXPECT_EQ(batch_of.at(c.body_a), batch_of.at(c.body_b)) << "a constraint between two batches";
     }
 }
@@ -106,7 +106,7 @@ TEST(Batches, a_body_that_left_after_the_groups_were_found_is_in_no_batch) {
     DisjointSets groups = scene.groups();
     const std::uint32_t gone = scene.awake.front();  // it names its group
     scene.awake.erase(scene.awake.begin());
-    scene.has_row[gone] = 0;
+    scene.row_of_body[gone] = 0;
     for (Constraint& c : scene.constraints)
         if (c.body_a == gone || c.body_b == gone) c.moves = Moves::Neither;
     Batches batches;
@@ -120,7 +120,7 @@ TEST(Batches, groups_are_packed_up_to_the_capacity_and_large_ones_come_first) {
         return Scene(random, 100, 100, 0);
     }();
     scene.awake.clear();
-    scene.has_row.assign(4000, 1);
+    scene.row_of_body.assign(4000, 1);
     for (std::uint32_t body = 0; body < 4000; ++body) scene.awake.push_back(body);
     const auto connect = [&](std::uint32_t first, std::uint32_t bodies) {
         for (std::uint32_t body = first; body + 1 < first + bodies; ++body) {

@@ -1,6 +1,5 @@
 /// Compiles the loops for every SIMD target and selects one at run time.
-// Vectors of unknown size cannot be members; such targets fall back to 128 bits.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#include "fase/core/detail/simd_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fase/broad/boxes/box_scan.cpp"
 #include <hwy/foreach_target.h>

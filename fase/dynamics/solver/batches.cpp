@@ -12,11 +12,11 @@ constexpr auto unassigned = static_cast<std::uint32_t>(-1);
 }  // namespace
 
 void Batches::divide(const Input& in, DisjointSets& groups) {
-    size_of_.resize(in.has_row.size());
-    batch_of_.resize(in.has_row.size());
+    size_of_.resize(in.row_of_body.size());
+    batch_of_.resize(in.row_of_body.size());
     // What islands do not unite: bodies that only come near, and moving kinematic ones with all that they may touch.
     for (const Constraint& c : in.constraints)
-        if (c.moves != Moves::Neither && in.has_row[c.body_a] && in.has_row[c.body_b] &&
+        if (c.moves != Moves::Neither && in.row_of_body[c.body_a] && in.row_of_body[c.body_b] &&
             !(c.touches && c.moves == Moves::Both))
             groups.unite(c.body_a, c.body_b);
     for (const std::uint32_t body : in.awake) {
@@ -24,7 +24,7 @@ void Batches::divide(const Input& in, DisjointSets& groups) {
         size_of_[group] = 0;
         batch_of_[group] = unassigned;
     }
-    const auto member = [&](const Constraint& c) { return in.has_row[c.body_a] ? c.body_a : c.body_b; };
+    const auto member = [&](const Constraint& c) { return in.row_of_body[c.body_a] ? c.body_a : c.body_b; };
     for (std::size_t i = 0; i < in.constraints.size(); ++i) {
         const Constraint& c = in.constraints[i];
         if (c.moves == Moves::Neither) continue;
@@ -50,14 +50,16 @@ void Batches::divide(const Input& in, DisjointSets& groups) {
         ++batches_[batch].bodies;
     }
 
-    std::uint32_t row = 1, first = 0;
+    std::uint32_t row = 1, first_body = 0, first = 0;
     for (Batch& batch : batches_) batch.constraints = 0;
     for (const Constraint& c : in.constraints)
         if (c.moves != Moves::Neither) ++batches_[batch_of_[member(c)]].constraints;
     for (Batch& batch : batches_) {
         batch.first_row = row;
+        batch.first_body = first_body;
         batch.first_constraint = first;
         row += batch.bodies + 1;
+        first_body += batch.bodies;
         first += batch.constraints;
         batch.bodies = batch.constraints = 0;
     }
@@ -65,7 +67,7 @@ void Batches::divide(const Input& in, DisjointSets& groups) {
     constraints_.resize(first);
     for (const std::uint32_t body : in.awake) {
         Batch& batch = batches_[batch_of_[body]];
-        bodies_[batch.first_row - 1 - batch_of_[body] + batch.bodies++] = body;
+        bodies_[batch.first_body + batch.bodies++] = body;
     }
     for (std::size_t i = 0; i < in.constraints.size(); ++i) {
         if (in.constraints[i].moves == Moves::Neither) continue;

@@ -12,7 +12,9 @@ namespace fase::dynamics {
 
 /// Bodies and constraints that are solved together: spans of rows and of Batches::constraints().
 struct Batch {
-    std::uint32_t first_row = 0, bodies = 0;  ///< the row after them receives the writes of unused lanes
+    std::uint32_t first_row = 0;
+    std::uint32_t first_body = 0,
+                  bodies = 0;  ///< the row after those of the bodies receives the writes of unused lanes
     std::uint32_t first_constraint = 0, constraints = 0;
 
     [[nodiscard]] std::uint32_t unused_row() const { return first_row + bodies; }
@@ -29,8 +31,8 @@ public:
     struct Input {
         std::span<const std::uint32_t> awake;  ///< bodies, ascending
         std::span<const Constraint> constraints;
-        std::span<const std::uint8_t> has_row;  ///< by body: 1: awake
-        std::span<const std::uint8_t> in_hub;   ///< by constraint: 1: no colour was free
+        std::span<const std::uint32_t> row_of_body;  ///< 0: static or asleep; the other values are not read
+        std::span<const std::uint8_t> in_hub;        ///< by constraint: 1: no colour was free
     };
     /// `groups`: sets of bodies that touch; constraints that only come near are added. The first batch holds the
     /// groups of more than `capacity` constraints and those with hubs, the others the rest. Constraints that move
@@ -39,8 +41,7 @@ public:
     [[nodiscard]] std::span<const Batch> all() const { return batches_; }
     /// The awake bodies, in the order of their rows within each batch.
     [[nodiscard]] std::span<const std::uint32_t> bodies_of(const Batch& batch) const {
-        return std::span(bodies_).subspan(batch.first_row - 1 - static_cast<std::size_t>(&batch - batches_.data()),
-                                          batch.bodies);
+        return std::span(bodies_).subspan(batch.first_body, batch.bodies);
     }
     /// The constraints of a batch, ascending.
     [[nodiscard]] std::span<const std::uint32_t> constraints_of(const Batch& batch) const {

@@ -47,6 +47,7 @@ Vec3 hit_place(const ContactBlock& block, int lane, const ContactManifold& m, co
 using detail::any;
 using detail::Float4;
 using detail::load_four;
+using detail::select;
 using detail::store_four;
 using Vec3x4 = Vec3Of<Float4>;
 
@@ -76,9 +77,6 @@ struct FourManifolds {
 };
 
 template <class F> Float4 lanes_of(const F& value) { return Float4::Lanes{value(0), value(1), value(2), value(3)}; }
-Vec3x4 select(Float4::Mask mask, const Vec3x4& yes, const Vec3x4& no) {
-    return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
-}
 void store(float (*rows)[block_lanes], int lane, const Vec3x4& v) {
     v.x.store(rows[0] + lane);
     v.y.store(rows[1] + lane);

@@ -87,6 +87,7 @@ void integrate_pose(SolverBody& body, SolverMotion& motion, float h) {
 using detail::any;
 using detail::Float4;
 using detail::load_four;
+using detail::select;
 using detail::store_four;
 
 /// Loads a vector, and the float after it, of four objects.
@@ -139,8 +140,7 @@ bool integrate_four_poses(SolverBody* bodies, SolverMotion* motions, float h) {
     const Vec3Of<Float4> before = load_vectors([&](int k) { return &motions[k].velocity_before.x; }, unused);
     const Float4::Mask is_free = (velocity.x == free.x) & (velocity.y == free.y) & (velocity.z == free.z);
     const Vec3Of<Float4> mean = (velocity + before) * Float4(0.5f);
-    const Vec3Of<Float4> by{select(is_free, mean.x, velocity.x), select(is_free, mean.y, velocity.y),
-                            select(is_free, mean.z, velocity.z)};
+    const Vec3Of<Float4> by = select(is_free, mean, velocity);
     const Vec3Of<Float4> moved = load_vectors([&](int k) { return bodies[k].moved; }, unused) + by * Float4(h);
     store_vectors(moved, unused, [&](int k) { return bodies[k].moved; });
     const Vec3Of<Float4> rotated = load_vectors([&](int k) { return bodies[k].rotated; }, unused) + spin * Float4(h);

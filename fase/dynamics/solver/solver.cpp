@@ -46,11 +46,10 @@ void world_inertia(SolverMass& mass, const BodyTraits& traits, Quat rotation) {
 Solver::Solver() : serial_(make_serial_runner()) {}
 
 void Solver::update_colours(const SolverInput& in) {
-    for (const std::uint32_t body : loaded_) row_of_body_[body] = has_row_[body] = 0;
+    for (const std::uint32_t body : loaded_) row_of_body_[body] = 0;
     row_of_body_.resize(in.bodies.traits.size(), 0);
-    has_row_.resize(in.bodies.traits.size(), 0);
     loaded_.assign(in.awake.begin(), in.awake.end());
-    for (const std::uint32_t body : in.awake) has_row_[body] = 1;
+    for (const std::uint32_t body : in.awake) row_of_body_[body] = 1;  // which one, load_bodies() knows
     in_hub_.resize(in.constraints.size());
     for (std::size_t i = 0; i < in.constraints.size(); ++i) {
         if (i + prefetch_ahead < in.constraints.size())
@@ -123,7 +122,7 @@ void Solver::load_bodies(const SolverInput& in) {
 
 void Solver::solve(const SolverInput& in) {
     update_colours(in);
-    batches_.divide({in.awake, in.constraints, has_row_, in_hub_}, in.groups);
+    batches_.divide({in.awake, in.constraints, row_of_body_, in_hub_}, in.groups);
     load_bodies(in);
     const ConstraintInput list{in.constraints, in.results};
     const std::span<const float> loads = known_loads_.find(

@@ -63,7 +63,6 @@ private:
     std::vector<SolverMass> masses_;
     std::vector<SolverMotion> motions_;
     std::vector<std::uint32_t> row_of_body_;  // 0: static or asleep
-    std::vector<std::uint8_t> has_row_;       // by body
     std::vector<std::uint8_t> in_hub_;        // by constraint
     std::vector<std::uint32_t> loaded_;       // bodies with a row, to reset the arrays by body
     std::vector<BatchSolver> workers_;

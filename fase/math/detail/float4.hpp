@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "fase/math/vec3.hpp"
+
 namespace fase::detail {
 
 /// Four lanes; each operation gives the bits of the same operation on floats.
@@ -35,6 +37,9 @@ struct Float4 {
     }
 };
 
+inline Vec3Of<Float4> select(Float4::Mask mask, const Vec3Of<Float4>& yes, const Vec3Of<Float4>& no) {
+    return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
 /// Whether any lane of a mask is true.
 inline bool any(Float4::Mask mask) {
     using Halves = long long __attribute__((vector_size(16)));

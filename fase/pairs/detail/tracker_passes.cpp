@@ -1,5 +1,5 @@
 /// Updates box histories and classifies pairs with SIMD; compiled for every target, one is chosen at run time.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
+#include "fase/core/detail/simd_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fase/pairs/detail/tracker_passes.cpp"
 #include <hwy/foreach_target.h>
