@@ -15,8 +15,8 @@
 #include "cli/common/structure_choice.hpp"
 #include "fase/broad/any_structure.hpp"
 #include "fase/broad/registry.hpp"
+#include "fase/core/detail/files.hpp"
 #include "fase/record/box_picture.hpp"
-#include "fase/record/recording/output_file.hpp"
 #include "fase/record/trace.hpp"
 
 namespace fase::cli {
@@ -132,10 +132,7 @@ std::string picture_of(const Replay& replay, std::span<const std::uint8_t> flags
 
 Result<void> write_text(const std::string& file, const std::string& text) {
     if (auto made = make_folder_of(file); !made) return made;
-    auto out = record::OutputFile::create(file);
-    if (!out) return out.error();
-    if (auto written = out->append(std::as_bytes(std::span(text))); !written) return written;
-    return out->complete(false);
+    return write_file(file, std::as_bytes(std::span(text)));
 }
 
 Result<void> draw(const DrawOptions& options) {

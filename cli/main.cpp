@@ -10,6 +10,7 @@
 #include "cli/check.hpp"
 #include "cli/common/arguments.hpp"
 #include "cli/common/command_registry.hpp"
+#include "cli/common/interrupt.hpp"
 #include "cli/common/output.hpp"
 #include "cli/distance.hpp"
 #include "cli/draw.hpp"
@@ -61,6 +62,7 @@ int run_program(int count, char** arguments) {
 int main(int count, char** arguments) {
     namespace cli = fase::cli;
     cli::guard_standard_streams();
+    cli::remove_temporary_files_on_signals();
     int code = cli::exit_bug;
     try {
         code = cli::run_program(count, arguments);

@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <initializer_list>
 
 #include "cli/common/output.hpp"
+#include "fase/core/detail/files.hpp"
 
 namespace fase::cli {
 namespace {
@@ -17,12 +19,29 @@ namespace {
 /// Global: a signal handler has no other access to state.
 volatile sig_atomic_t received = 0;
 const char* late_text = "";
-char unfinished_file[4096] = "";
+/// A file name that signal handlers read. Assigned by one thread.
+struct FileName {
+    char text[4096] = "";
+
+    void assign(const char* name) {
+        text[0] = '\0';  // first: a signal must not see a mixture of two names
+        const std::size_t size = std::strlen(name) + 1;
+        if (size == 1 || size > sizeof text) return;
+        std::memcpy(text + 1, name + 1, size - 1);
+        text[0] = name[0];
+    }
+    void unlink() const {
+        if (text[0] != '\0') ::unlink(text);
+    }
+};
+FileName unfinished_file;  // of remove_at_exit()
+FileName temporary_file;   // of write_file()
 
 constexpr timeval grace_period{0, 950000};
 
 void exit_at_once() {
-    if (unfinished_file[0] != '\0') ::unlink(unfinished_file);
+    unfinished_file.unlink();
+    temporary_file.unlink();
     ::_exit(128 + received);
 }
 
@@ -39,6 +58,12 @@ extern "C" void exit_after_grace_period(int) {
     for (const char* text : {"\nfase: ", late_text, "\n"})
         if (::write(2, text, std::strlen(text)) < 0) break;
     exit_at_once();
+}
+
+extern "C" void end_program(int number) {
+    temporary_file.unlink();
+    ::signal(number, SIG_DFL);
+    ::raise(number);
 }
 
 void handle(int number, void (*handler)(int)) {
@@ -63,15 +88,16 @@ Interrupts::Interrupts(const char* late) {
 Interrupts::~Interrupts() {
     const itimerval never{};
     ::setitimer(ITIMER_REAL, &never, nullptr);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) handle(number, SIG_DFL);
-    unfinished_file[0] = '\0';
+    handle(SIGALRM, SIG_DFL);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) handle(number, end_program);
+    unfinished_file.assign("");
 }
 
-void Interrupts::remove_at_exit(const std::string& path) {
-    unfinished_file[0] = '\0';  // first: a signal must not see a mixture of two names
-    if (path.empty() || path.size() >= sizeof unfinished_file) return;
-    std::memcpy(unfinished_file + 1, path.c_str() + 1, path.size());
-    unfinished_file[0] = path[0];
+void Interrupts::remove_at_exit(const std::string& path) { unfinished_file.assign(path.c_str()); }
+
+void remove_temporary_files_on_signals() {
+    observe_parts([](const char* part) { temporary_file.assign(part); });
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) handle(number, end_program);
 }
 
 int Interrupts::signal() { return received; }

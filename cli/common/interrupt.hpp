@@ -20,6 +20,10 @@ public:
     void remove_at_exit(const std::string& path);
 };
 
+/// Call once, at the start of the program: SIGINT, SIGTERM and SIGHUP remove the temporary file of a file that is being
+/// written, and end the program. Those of an Interrupts object go before.
+void remove_temporary_files_on_signals();
+
 /// Prints that a signal stopped the command and that `path` is not written; returns 128 + signal.
 int refuse_interrupted(const std::string& path);
 

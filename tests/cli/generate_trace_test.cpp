@@ -70,6 +70,23 @@ TEST(GenerateTrace, ASignalRemovesTheUnfinishedFile) {
     }
 }
 
+/// A command without results to keep ends by the signal, and removes the file that it writes.
+TEST(Signals, LeaveNoTemporaryFile) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_fase({"generate", "rain", "--count", "200000", "--frames", "1", "-o", folder / "rain.aabt"}).code, 0);
+    const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path()), {}); };
+    for (int i = 0; i < 10; ++i) {
+        RunningFase running({"draw", folder / "rain.aabt", "-o", folder / "rain.svg"});
+        ASSERT_TRUE(wait_until([&] { return files() > 1; }));  // the picture is being written, or is written
+        running.send(i % 2 == 0 ? SIGTERM : SIGHUP);
+        const int code = running.wait().code;
+        EXPECT_TRUE(code == 0 || code == -SIGTERM || code == -SIGHUP) << code;
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+        std::filesystem::remove(folder / "rain.svg");
+    }
+}
+
 TEST(Generate, ASignalLeavesNoPartOfAScene) {
     const TemporaryFolder folder;
     RunningFase running({"generate", "pile", "--count", "1000000", "-o", folder / "p.glb"});

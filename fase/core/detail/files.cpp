@@ -2,17 +2,16 @@
 #include "fase/core/detail/files.hpp"
 
 #include <fcntl.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+
 #include "fase/core/detail/text.hpp"
 
 namespace fase {
@@ -57,49 +56,15 @@ std::string real_path(const std::string& path) {
     return real ? real.get() : path;
 }
 
-/// Delays the signals that end a program in this thread until the destructor, so that a temporary file can be removed.
-class EndSignals {
-public:
-    EndSignals() {
-        sigemptyset(&blocked_);
-        for (const int signal : signals) {
-            struct sigaction now = {};
-            const bool ignored = ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
-            if (!ignored) sigaddset(&blocked_, signal);
-        }
-        pthread_sigmask(SIG_BLOCK, &blocked_, &before_);
-    }
-    ~EndSignals() {
-        const int code = errno;
-        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-        errno = code;
-    }
-    EndSignals(const EndSignals&) = delete;
-    EndSignals& operator=(const EndSignals&) = delete;
-    /// Whether one of them waits to be delivered. Those that the caller blocked do not count.
-    [[nodiscard]] bool arrived() const {
-        sigset_t pending;
-        sigpending(&pending);
-        return std::any_of(signals.begin(), signals.end(), [&](int signal) {
-            return sigismember(&pending, signal) == 1 && sigismember(&blocked_, signal) == 1 &&
-                   sigismember(&before_, signal) == 0;
-        });
-    }
+std::atomic<PartObserver> part_observer = nullptr;
 
-private:
-    static constexpr std::array<int, 4> signals{SIGINT, SIGTERM, SIGHUP, SIGALRM};
-    sigset_t blocked_, before_;
-};
+void tell_part(const std::string& part) {
+    if (const PartObserver observer = part_observer.load()) observer(part.c_str());
+}
 
-/// Writes all bytes; fails with EINTR when one of `stop` arrives.
-bool write_all(int descriptor, std::span<const std::byte> bytes, const EndSignals* stop = nullptr) {
-    constexpr std::size_t part = std::size_t(8) << 20;  // milliseconds on most disks
+bool write_all(int descriptor, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-        if (stop != nullptr && stop->arrived()) {
-            errno = EINTR;
-            return false;
-        }
-        const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), part));
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return false;
         bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -161,24 +126,28 @@ Result<void> write_file(const std::string& path, std::span<const std::byte> byte
         if (!write_all(device.number(), bytes) || !device.close()) return io_error(path, "write");
         return {};
     }
-    const EndSignals signals;
     // Keep a symbolic link and replace its target.
     const std::string target = exists ? real_path(path) : path;
     std::string part;
     int number = -1;
     for (int i = 0; i < 100 && number < 0; ++i) {
         part = detail::format("{}.part{}-{}", target, ::getpid(), i);
+        tell_part(part);  // before it exists: a signal may come in between
         number = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (number < 0 && errno != EEXIST) break;
     }
     Descriptor file(number);
-    if (!file.good()) return io_error(path, "create");
-    if (!write_all(file.number(), bytes, &signals) || !file.close() || ::rename(part.c_str(), target.c_str()) != 0) {
-        const Error error = io_error(path, "write");
+    Result<void> result;
+    if (!file.good()) {
+        result = io_error(path, "create");
+    } else if (!write_all(file.number(), bytes) || !file.close() || ::rename(part.c_str(), target.c_str()) != 0) {
+        result = io_error(path, "write");
         ::unlink(part.c_str());
-        return error;
     }
-    return {};
+    tell_part({});
+    return result;
 }
+
+void observe_parts(PartObserver observer) { part_observer.store(observer); }
 
 }  // namespace fase

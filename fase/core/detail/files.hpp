@@ -24,9 +24,14 @@ Result<FileStart> read_start(const std::string& path, std::size_t count);
 
 /// Writes a file atomically: readers see the old bytes or all new ones, never a part. Writes a temporary file in the
 /// same folder and renames it at the end. Writes to a device or pipe directly. Io with the path on any failure; the
-/// temporary file is removed then, and when SIGINT, SIGTERM, SIGHUP or SIGALRM arrives: the signal is delivered after
-/// that.
+/// temporary file is removed then.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);
+
+/// Called with the name of each temporary file before write_file() creates it, and with "" when it is gone. For a
+/// program whose signal handlers remove it; calls come from the threads that write.
+using PartObserver = void (*)(const char* part);
+/// Replaces the observer of this process; null: none, as at first.
+void observe_parts(PartObserver observer);
 
 /// Returns the folder of a path: "a/b.gltf" -> "a", "b.gltf" -> ".".
 [[nodiscard]] std::string folder_of(const std::string& path);

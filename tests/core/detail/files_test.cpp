@@ -2,9 +2,7 @@
 #include "fase/core/detail/files.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -28,20 +26,19 @@ TEST(Files, ReadsARegularFile) {
     EXPECT_EQ(read_start(folder / "a", 2)->size, 5u);
 }
 
-TEST(Files, ASignalThatEndsAProgramStopsAWriteWithoutALeftover) {
+TEST(Files, TheObserverKnowsTheTemporaryFileWhileItExists) {
     const TemporaryFolder folder;
-    const std::vector<std::byte> bytes(std::size_t(1) << 28);
-    struct sigaction before {
-    }, quiet{};
-    quiet.sa_handler = [](int) {};
-    ::sigaction(SIGALRM, &quiet, &before);
-    const itimerval often{{0, 1000}, {0, 1000}}, never{};
-    ::setitimer(ITIMER_REAL, &often, nullptr);
-    const Result<void> written = write_file(folder / "large", bytes);
-    ::setitimer(ITIMER_REAL, &never, nullptr);
-    ::sigaction(SIGALRM, &before, nullptr);
-    EXPECT_EQ(written.status(), Status::Io);
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    static std::vector<std::string> told;
+    told.clear();
+    observe_parts([](const char* part) { told.emplace_back(part); });
+    EXPECT_TRUE(write_file(folder / "a", test::bytes_of("one")));
+    EXPECT_FALSE(write_file(folder / "none/a", test::bytes_of("one")));
+    observe_parts(nullptr);
+    EXPECT_TRUE(write_file(folder / "b", test::bytes_of("two")));
+    ASSERT_EQ(told.size(), 4u);
+    EXPECT_TRUE(told[0].starts_with(folder / "a.part")) << told[0];
+    EXPECT_TRUE(told[2].starts_with(folder / "none/a.part")) << told[2];
+    EXPECT_EQ(told[1] + told[3], "");
 }
 
 TEST(Files, RefusesPipesFoldersAndDevices) {
