@@ -38,6 +38,22 @@ std::unique_ptr<btCollisionShape> make_hull(const ConvexHull& hull) {
     return shape;
 }
 
+struct MeshTriangles {
+    btTriangleMesh triangles;
+    explicit MeshTriangles(const Mesh& mesh) {
+        for (std::size_t t = 0; t < mesh.data->size(); ++t) {
+            const auto [a, b, c] = mesh.triangle(t);
+            triangles.addTriangle(to_bullet(a), to_bullet(b), to_bullet(c));
+        }
+    }
+};
+
+/// A mesh with the triangles that it refers to.
+class MeshShape final : private MeshTriangles, public btBvhTriangleMeshShape {
+public:
+    explicit MeshShape(const Mesh& mesh) : MeshTriangles(mesh), btBvhTriangleMeshShape(&triangles, true) {}
+};
+
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
     struct Make {
         std::unique_ptr<btCollisionShape> operator()(const Sphere& s) const {
@@ -53,6 +69,7 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
             return std::make_unique<btCylinderShape>(btVector3(s.radius, s.half_height, s.radius));
         }
         std::unique_ptr<btCollisionShape> operator()(const ConvexHull& s) const { return make_hull(s); }
+        std::unique_ptr<btCollisionShape> operator()(const Mesh& s) const { return std::make_unique<MeshShape>(s); }
         std::unique_ptr<btCollisionShape> operator()(const HalfSpace&) const {
             return std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0));
         }

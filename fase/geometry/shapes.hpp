@@ -10,6 +10,7 @@
 #include "fase/geometry/shapes/convex_hull.hpp"
 #include "fase/geometry/shapes/cylinder.hpp"
 #include "fase/geometry/shapes/half_space.hpp"
+#include "fase/geometry/shapes/mesh.hpp"
 #include "fase/geometry/shapes/sphere.hpp"
 
 namespace fase {
@@ -34,7 +35,7 @@ template <NamedShape... S> struct ShapeList {
     using Variant = std::variant<S...>;
     static constexpr std::size_t count = sizeof...(S);
 };
-using AllShapes = ShapeList<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpace>;
+using AllShapes = ShapeList<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpace, Mesh>;
 
 /// Any one shape.
 using Shape = AllShapes::Variant;
@@ -46,6 +47,14 @@ template <class F> void for_each_shape(F&& f) { for_each_shape(f, AllShapes{}); 
 /// Returns the name of the shape's kind: "sphere", "box" …
 [[nodiscard]] inline std::string_view name_of(const Shape& shape) {
     return std::visit([]<class S>(const S&) { return S::name; }, shape);
+}
+
+[[nodiscard]] inline bool is_mesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
+
+/// Whether the shape has a mass and an inside: half-spaces and meshes have none. They move dynamic bodies, but only
+/// static and kinematic ones may have them, save as sensors.
+[[nodiscard]] inline bool is_solid(const Shape& shape) {
+    return !std::holds_alternative<HalfSpace>(shape) && !is_mesh(shape);
 }
 
 /// Whether the surface is curved. Contact points keep their place below a curved body when it rolls; those of a

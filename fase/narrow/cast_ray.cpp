@@ -27,7 +27,8 @@ template <class F> std::optional<RayOnShape> cast(const Pose& pose, const Ray& r
                          rotate_back(rotation, to_double(ray.direction)), ray.length};
     const std::optional<LocalHit> hit = hit_in_frame(local);
     if (!hit) return std::nullopt;
-    return RayOnShape{hit->distance, hit->inside ? -ray.direction : to_float(rotate(rotation, hit->normal))};
+    return RayOnShape{hit->distance, hit->inside ? -ray.direction : to_float(rotate(rotation, hit->normal)),
+                      hit->triangle};
 }
 
 }  // namespace

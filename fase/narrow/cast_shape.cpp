@@ -12,7 +12,7 @@ std::optional<ShapeOnShape> cast_shape(const Shape& moving, const Pose& from, Ve
     const auto stop = advance(target, moving, exactly_relative(target_pose, from), local_direction, double(length));
     if (!stop) return std::nullopt;
     return ShapeOnShape{stop->distance, target_pose.position + rotation * stop->on_target,
-                        to_float(rotation * stop->normal)};
+                        to_float(rotation * stop->normal), stop->triangle};
 }
 
 }  // namespace fase::narrow

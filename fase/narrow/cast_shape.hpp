@@ -1,7 +1,9 @@
 #pragma once
 /// Shape casts against a single shape.
+#include <cstdint>
 #include <optional>
 
+#include "fase/core/no_index.hpp"
 #include "fase/geometry/shapes.hpp"
 #include "fase/math/pose.hpp"
 
@@ -9,9 +11,10 @@ namespace fase::narrow {
 
 /// The first touch of a cast shape with another.
 struct ShapeOnShape {
-    double distance = 0;  ///< metres that the shape moves until the touch, 0 to the length of the cast
-    Vec3d point;          ///< world, on the surface of the target
-    Vec3 normal;          ///< unit, world, from the target to the moving shape
+    double distance = 0;                ///< metres that the shape moves until the touch, 0 to the length of the cast
+    Vec3d point;                        ///< world, on the surface of the target
+    Vec3 normal;                        ///< unit, world, from the target to the moving shape
+    std::uint32_t triangle = no_index;  ///< of a target that is a mesh: its place (see CollisionMesh)
 };
 
 /// Translates `moving` from the pose `from` along `direction` (unit) by `length` metres (0 or more, may be infinite)

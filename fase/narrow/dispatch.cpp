@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "fase/narrow/collide_mesh.hpp"
 #include "fase/narrow/detail/general.hpp"
 #include "fase/narrow/pairs/collide_box_box.hpp"
 #include "fase/narrow/pairs/collide_box_capsule.hpp"
@@ -33,12 +34,33 @@ concept HasSpecial = requires {
     static_cast<Manifold (*)(const A&, const B&, const LocalPose&, float)>(&collide);
 };
 
+/// The contact of a mesh with a convex shape: the deepest of its manifolds.
+template <ConvexShape B> Manifold collide_deepest(const Mesh& a, const B& b, const LocalPose& b_in_a, float margin) {
+    MeshContacts contacts;
+    Manifold best;
+    float nearest = 0;
+    for (const MeshManifold& m : contacts.find(a, Shape(b), to_double(b_in_a), margin)) {
+        for (int i = 0; i < m.manifold.count; ++i) {
+            const float separation = m.manifold.points[static_cast<std::size_t>(i)].separation;
+            if (best.count != 0 && !(separation < nearest)) continue;
+            nearest = separation;
+            best = m.manifold;
+        }
+    }
+    for (int i = 0; i < best.count; ++i) best.points[static_cast<std::size_t>(i)].position += b_in_a.position;
+    return best;
+}
+
 /// Calls the special function for (A, B), or that for (B, A) with a flipped result; else the general function.
 template <class A, class B> Manifold collide_best(const A& a, const B& b, const LocalPose& b_in_a, float margin) {
     if constexpr (HasSpecial<A, B>) {
         return collide(a, b, b_in_a, margin);
     } else if constexpr (HasSpecial<B, A>) {
         return flipped(collide(b, a, inverse(b_in_a), margin), b_in_a);
+    } else if constexpr (std::is_same_v<A, Mesh> && ConvexShape<B>) {
+        return collide_deepest(a, b, b_in_a, margin);
+    } else if constexpr (std::is_same_v<B, Mesh> && ConvexShape<A>) {
+        return flipped(collide_deepest(b, a, inverse(b_in_a), margin), b_in_a);
     } else {
         return collide_general(a, b, b_in_a, margin);
     }

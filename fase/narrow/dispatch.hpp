@@ -11,7 +11,9 @@ namespace fase::narrow {
 
 /// Returns the contact of any two shapes: points with separation <= `margin` metres (0 or more). `b_in_a` maps b's
 /// frame to a's; the manifold is in a's frame, its normal from a to b. No points when the shapes are farther apart, or
-/// when both are half-spaces. Deterministic, thread-safe, allocates nothing.
+/// when both are half-spaces or meshes. A mesh touches other shapes in several places: this is the deepest one;
+/// MeshContacts finds all, and does not copy the shape. Deterministic, thread-safe; allocates nothing, except for a
+/// mesh.
 [[nodiscard]] Manifold collide(const Shape& a, const Shape& b, const LocalPose& b_in_a, float margin);
 
 /// One call of collide() in a batch; `out` receives the manifold. All pointers must be valid, all `out` distinct.

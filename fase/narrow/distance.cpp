@@ -3,7 +3,9 @@
 
 #include <limits>
 
+#include "fase/narrow/detail/core_distance.hpp"
 #include "fase/narrow/detail/infinity.hpp"
+#include "fase/narrow/detail/mesh_queries.hpp"
 #include "fase/narrow/detail/penetration.hpp"
 
 namespace fase::narrow {
@@ -18,6 +20,31 @@ Distance with_radii(double core_distance, Vec3d on_a, Vec3d normal, double radiu
     result.on_b = result.on_a + normal * result.distance;
     return result;
 }
+
+/// The distance of a half-space (a) and a convex shape (b).
+Distance distance_from_half_space(const CoreView& b, const TransformD& b_in_a) {
+    const Vec3d lowest = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, {0, -1, 0})));
+    return with_radii(lowest.y, {lowest.x, 0, lowest.z}, {0, 1, 0}, 0, b.radius);
+}
+
+Distance distance_of_half_spaces(const TransformD& b_in_a) {
+    const Vec3d up{0, 1, 0}, up_b = b_in_a.rotation.y;
+    Distance result;
+    result.normal = up;
+    const bool facing = up_b.y < 0 && std::abs(up_b.x) < 1e-12 && std::abs(up_b.z) < 1e-12;
+    const Vec3d position = b_in_a.position;
+    result.on_a = {position.x, 0, position.z};
+    if (facing) {
+        result.distance = position.y;
+        result.on_b = position;
+    } else {
+        result.distance = -infinity;
+        result.on_b = result.on_a;
+    }
+    return result;
+}
+
+}  // namespace
 
 Distance distance_of_cores(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
     const GjkResult apart = gjk(a, b, b_in_a);
@@ -45,39 +72,22 @@ Distance distance_of_cores(const CoreView& a, const CoreView& b, const Transform
     return with_radii(-deepest.depth, touch.on_a, deepest.normal, a.radius, b.radius);
 }
 
-/// The distance of a half-space (a) and a convex shape (b).
-Distance distance_from_half_space(const CoreView& b, const TransformD& b_in_a) {
-    const Vec3d lowest = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, {0, -1, 0})));
-    return with_radii(lowest.y, {lowest.x, 0, lowest.z}, {0, 1, 0}, 0, b.radius);
+bool cores_overlap(const CoreView& a, const CoreView& b, const TransformD& b_in_a) {
+    GjkOptions options;
+    options.farther_than = a.radius + b.radius;
+    const GjkResult result = gjk(a, b, b_in_a, options);
+    if (result.state == GjkResult::State::Overlap) return true;
+    return result.state == GjkResult::State::Apart && result.distance <= options.farther_than + 1e-15 * result.scale;
 }
-
-Distance distance_of_half_spaces(const TransformD& b_in_a) {
-    const Vec3d up{0, 1, 0}, up_b = b_in_a.rotation.y;
-    Distance result;
-    result.normal = up;
-    const bool facing = up_b.y < 0 && std::abs(up_b.x) < 1e-12 && std::abs(up_b.z) < 1e-12;
-    const Vec3d position = b_in_a.position;
-    result.on_a = {position.x, 0, position.z};
-    if (facing) {
-        result.distance = position.y;
-        result.on_b = position;
-    } else {
-        result.distance = -infinity;
-        result.on_b = result.on_a;
-    }
-    return result;
-}
-
-Distance flipped(const Distance& d, const TransformD& b_in_a) {
-    return {d.distance, transform(b_in_a, d.on_b), transform(b_in_a, d.on_a), -(b_in_a.rotation * d.normal)};
-}
-
-}  // namespace
 
 Distance signed_distance(const Shape& a, const Shape& b, const TransformD& b_in_a) {
     return std::visit(
         [&]<class A, class B>(const A& s, const B& t) -> Distance {
-            if constexpr (ConvexShape<A> && ConvexShape<B>) {
+            if constexpr (std::is_same_v<A, Mesh>) {
+                return mesh_distance(s, b, b_in_a);
+            } else if constexpr (std::is_same_v<B, Mesh>) {
+                return flipped(mesh_distance(t, a, inverse(b_in_a)), b_in_a);
+            } else if constexpr (ConvexShape<A> && ConvexShape<B>) {
                 return distance_of_cores(core_view(s), core_view(t), b_in_a);
             } else if constexpr (ConvexShape<B>) {
                 return distance_from_half_space(core_view(t), b_in_a);
@@ -94,13 +104,11 @@ bool overlaps(const Shape& a, const Shape& b, const TransformD& b_in_a) {
     return std::visit(
         [&]<class A, class B>(const A& s, const B& t) {
             if constexpr (ConvexShape<A> && ConvexShape<B>) {
-                const CoreView view_a = core_view(s), view_b = core_view(t);
-                GjkOptions options;
-                options.farther_than = view_a.radius + view_b.radius;
-                const GjkResult result = gjk(view_a, view_b, b_in_a, options);
-                if (result.state == GjkResult::State::Overlap) return true;
-                return result.state == GjkResult::State::Apart &&
-                       result.distance <= options.farther_than + 1e-15 * result.scale;
+                return cores_overlap(core_view(s), core_view(t), b_in_a);
+            } else if constexpr (std::is_same_v<A, Mesh>) {
+                return mesh_overlaps(s, b, b_in_a);
+            } else if constexpr (std::is_same_v<B, Mesh>) {
+                return mesh_overlaps(t, a, inverse(b_in_a));
             } else {
                 return signed_distance(a, b, b_in_a).distance <= 0;
             }

@@ -18,7 +18,8 @@ struct Distance {
 /// polyhedra, spheres and capsules; the overlap of a cylinder's core is found iteratively, to 1e-10 of the sizes, or
 /// some 1e-5 when the iteration limit is reached. If several directions have the minimum depth, returns one of them. A
 /// half-space and another shape: the other's lowest point. Two half-spaces: minus infinity, because no translation
-/// separates them, unless they face each other (normals opposite to 1e-12): then the gap between the planes.
+/// separates them, unless they face each other (normals opposite to 1e-12): then the gap between the planes. A
+/// mesh has no inside: the smallest distance of its triangles.
 /// Thread-safe, allocates nothing; takes microseconds.
 [[nodiscard]] Distance signed_distance(const Shape& a, const Shape& b, const TransformD& b_in_a);
 

@@ -72,8 +72,10 @@ struct ShapeFields {
     void operator()(const Capsule& capsule) const { round("capsule", capsule.half_length, capsule.radius); }
     void operator()(const Cylinder& cylinder) const { round("cylinder", cylinder.half_height, cylinder.radius); }
     void operator()(const HalfSpace&) const { type("plane"); }
-    void operator()(const ConvexHull&) const {
-        assert(false && "a hull is written as the mesh of a node");
+    void operator()(const ConvexHull&) const { unexpected(); }
+    void operator()(const fase::Mesh&) const { unexpected(); }
+    void unexpected() const {
+        assert(false && "hulls and meshes are written as the meshes of nodes");
         type("plane");
     }
 };

@@ -11,8 +11,8 @@ namespace {
 Result<void> check_collider(BodyKind kind, const Shape& shape, const ColliderDef& def, const char* where) {
     if (auto checked = check(shape); !checked) return checked;
     if (auto checked = check(def); !checked) return checked;
-    if (kind == BodyKind::Dynamic && std::holds_alternative<HalfSpace>(shape) && !def.sensor)
-        return refused(where, "a half-space on a dynamic body", "a shape with a mass",
+    if (kind == BodyKind::Dynamic && !is_solid(shape) && !def.sensor)
+        return refused(where, std::string("a ") + noun_of(shape) + " on a dynamic body", "a shape with a mass",
                        "make the body static or kinematic");
     return {};
 }

@@ -1,8 +1,10 @@
 /// Stage "collide": updates the contact manifold of each active pair.
 #include <algorithm>
+#include <iterator>
 
 #include "fase/core/detail/prefetch.hpp"
 #include "fase/narrow/dispatch.hpp"
+#include "fase/world/detail/collide_tables.hpp"
 #include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/manifolds.hpp"
 #include "fase/world/detail/stages.hpp"
@@ -16,6 +18,8 @@ using dynamics::ContactManifold;
 namespace {
 
 bool is_half_space(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape); }
+
+constexpr std::uint8_t not_reused = 0, on_mesh = 2;  // values of Constraints::reused, beside 1
 
 /// Places the frames of two colliders near each other, in float. The difference is taken in double, so bodies may be
 /// far from the origin. A half-space is shifted along its plane until it is nearest to the other shape: it may be the
@@ -65,15 +69,6 @@ WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& p
     return world;
 }
 
-/// What compute_manifolds() reads; it writes the contact and its manifolds.
-struct CollideTables {
-    const Settings& settings;
-    const BodyTable& bodies;
-    const ColliderTable& colliders;
-    const std::vector<float>& sweep;
-    ContactTable& contacts;
-};
-
 /// Loads what update_active() will read of the active contacts after number i.
 void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
     constexpr std::size_t near = 4, far = 8;
@@ -109,7 +104,7 @@ void compute_manifolds(const CollideTables& tables, Contact& c) {
     c.reuse_distance = 0.1f * scale;
     const LocalPose pose_a = collider_pose(bodies, ca), pose_b = collider_pose(bodies, cb);
     const NearbyFrames frames(pose_a, pose_b, shape_a.shape, shape_b.shape, exact_b_from_a);
-    const float margin = c.sensor ? 0.0f : settings.speculative_distance + sweep[c.body_a] + sweep[c.body_b];
+    const float margin = tables.margin(c);
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, frames.b_in_a, margin);
     ContactManifold& m = contacts.manifolds.places(c)[0];
     store_manifold(c, m, in_world_axes(manifold, pose_a, pose_b, frames, is_half_space(shape_a.shape), b_from_a), a, b,
@@ -119,11 +114,19 @@ void compute_manifolds(const CollideTables& tables, Contact& c) {
     m.b_rolls = is_curved(shape_b.shape);
 }
 
-/// Reuses or computes the manifolds of a contact. Returns true when it reused them.
-bool update_contact(const CollideTables& tables, Contact& c) {
-    if (c.reusable && reuse_manifolds(reuse_input(tables, c))) return true;
-    compute_manifolds(tables, c);
-    return false;
+/// Reuses or computes the manifolds of contacts, in any order.
+void update_contacts(const CollideTables& tables, std::span<const std::uint32_t> list, TaskRunner& tasks) {
+    ContactTable& contacts = tables.contacts;
+    parallel_ranges(tasks, list.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Contact& c = contacts[list[i]];
+            if (c.on_mesh || (c.reusable && reuse_manifolds(reuse_input(tables, c)))) continue;
+            compute_manifolds(tables, c);
+        }
+    });
+    std::vector<std::uint32_t> meshes;
+    std::ranges::copy_if(list, std::back_inserter(meshes), [&](std::uint32_t c) { return contacts[c].on_mesh; });
+    collide_with_meshes(tables, meshes, tasks);
 }
 
 /// Updates the active contacts [begin, end), a few dozen, and sets reused[i] for each: first those that may be reused,
@@ -136,7 +139,7 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
     for (std::size_t i = begin; i < end; ++i) {
         prefetch_contact(tables.bodies, contacts, i, end);
         Contact& c = contact(i);
-        reused[i] = 0;
+        reused[i] = c.on_mesh && !c.sensor ? on_mesh : not_reused;
         if (!c.reusable || c.sensor) continue;
         if (c.manifolds != 1) {
             reused[i] = reuse_manifolds(reuse_input(tables, c)) ? 1 : 0;
@@ -151,7 +154,7 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
     }
     for (std::size_t k = 0; k < count; ++k) reused[at[k]] = reuse_manifolds(inputs[k]) ? 1 : 0;
     for (std::size_t i = begin; i < end; ++i)
-        if (Contact& c = contact(i); reused[i] == 0 && !c.sensor) compute_manifolds(tables, c);
+        if (Contact& c = contact(i); reused[i] == not_reused && !c.sensor) compute_manifolds(tables, c);
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
@@ -161,9 +164,18 @@ void check_resting(const CollideTables& tables, std::vector<std::uint32_t>& chec
     checked.swap(contacts.to_check);
     std::erase_if(checked, [&](std::uint32_t c) { return contacts.graph.resting_at(c) == no_index; });
     sort_by_pair(contacts, checked);
-    parallel_ranges(tasks, checked.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) update_contact(tables, contacts[checked[i]]);
-    });
+    update_contacts(tables, checked, tasks);
+}
+
+/// Collides the active contacts that update_active() left out.
+void update_meshes(const CollideTables& tables, std::vector<std::uint8_t>& reused, TaskRunner& tasks) {
+    std::vector<std::uint32_t> list;
+    for (std::size_t i = 0; i < reused.size(); ++i) {
+        if (reused[i] != on_mesh) continue;
+        reused[i] = not_reused;
+        list.push_back(tables.contacts.active.values[i]);
+    }
+    collide_with_meshes(tables, list, tasks);
 }
 
 }  // namespace
@@ -178,6 +190,7 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
         for (std::size_t i = begin; i < end; i += group)
             update_active(tables, i, std::min(i + group, end), constraints.reused);
     });
+    update_meshes(tables, constraints.reused, context.tasks);
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
     StepReport& report = context.report;
     report.manifolds += static_cast<std::uint32_t>(constraints.all.size());
@@ -192,9 +205,7 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
 void collide_sensors(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders,
                      const Moved& moved, const Constraints& constraints, ContactTable& contacts) {
     const CollideTables tables{context.settings, bodies, colliders, moved.sweep, contacts};
-    parallel_ranges(context.tasks, constraints.sensors.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) update_contact(tables, contacts[constraints.sensors[i]]);
-    });
+    update_contacts(tables, constraints.sensors, context.tasks);
     for (const std::uint32_t index : constraints.sensors) {
         const Contact& c = contacts[index];
         context.report.manifolds += c.manifolds;

@@ -30,6 +30,7 @@ std::uint32_t add_contact(const ColliderTable& colliders, ContactTable& contacts
     contact.generation_b = colliders.ids.slots()[pair.b].generation;
     contact.sensor = a.sensor || b.sensor;
     contact.sensor_is_b = b.sensor;
+    contact.on_mesh = is_mesh(colliders.shapes[a.shape].shape) || is_mesh(colliders.shapes[b.shape].shape);
     contacts.manifolds.reserve(contact, 1);
     update_materials(colliders, contacts, index);
     contacts.graph.add(index, pair.a, pair.b);

@@ -23,9 +23,15 @@ struct Nearest {
     }
 };
 
-RayHit ray_hit(const WorldState& state, const Ray& ray, const Nearest& nearest, Vec3 normal) {
+MeshTriangle triangle_at(const WorldState& state, std::uint32_t collider, std::uint32_t place) {
+    if (place == no_index) return {};
+    const CollisionMesh& mesh = *std::get<Mesh>(shape_of(state, collider)).data;
+    return {mesh.number(place), mesh.material(place)};
+}
+
+RayHit ray_hit(const WorldState& state, const Ray& ray, const Nearest& nearest, const narrow::RayOnShape& hit) {
     return {found(state, nearest.collider), static_cast<float>(nearest.distance), point_at(ray, nearest.distance),
-            normal};
+            hit.normal, triangle_at(state, nearest.collider, hit.triangle)};
 }
 
 std::optional<narrow::RayOnShape> exact_hit(const WorldState& state, const Ray& ray, std::uint32_t collider) {
@@ -39,7 +45,7 @@ float limit_of(const Ray& ray, const Nearest& nearest) {
 
 std::optional<RayHit> nearest_on(const WorldState& state, const Ray& ray, const QueryFilter& filter) {
     Nearest nearest;
-    Vec3 normal;
+    narrow::RayOnShape first;
     visit_along(state.query, ray, {}, {}, [&](std::uint32_t collider, float entry) {
         if (!passes_filter(state, filter, collider)) return limit_of(ray, nearest);
         if (const auto hit = exact_hit(state, ray, collider)) {
@@ -48,13 +54,13 @@ std::optional<RayHit> nearest_on(const WorldState& state, const Ray& ray, const 
             const Nearest here{std::max(hit->distance, double(entry)), collider};
             if (here < nearest) {
                 nearest = here;
-                normal = hit->normal;
+                first = *hit;
             }
         }
         return limit_of(ray, nearest);
     });
     if (!nearest.found_any()) return std::nullopt;
-    return ray_hit(state, ray, nearest, normal);
+    return ray_hit(state, ray, nearest, first);
 }
 
 /// Returns the bounds of a shape relative to the position of its pose; they contain that position.
@@ -90,18 +96,17 @@ Result<void> cast_ray_all(const World& world, const Ray& ray, const QueryFilter&
     return run_query<Result<void>>(world, "cast_ray_all", [&](const WorldState& state) -> Result<void> {
         struct Entry {
             Nearest key;
-            Vec3 normal;
+            narrow::RayOnShape hit;
         };
         std::vector<Entry> hits;
         visit_along(state.query, ray, {}, {}, [&](std::uint32_t collider, float) {
             if (passes_filter(state, filter, collider))
-                if (const auto hit = exact_hit(state, ray, collider))
-                    hits.push_back({{hit->distance, collider}, hit->normal});
+                if (const auto hit = exact_hit(state, ray, collider)) hits.push_back({{hit->distance, collider}, *hit});
             return ray.length;
         });
         std::sort(hits.begin(), hits.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
         if (out.capacity() - out.size() < hits.size()) out.reserve(std::max(out.size() + hits.size(), 2 * out.size()));
-        for (const Entry& e : hits) out.push_back(ray_hit(state, ray, e.key, e.normal));
+        for (const Entry& e : hits) out.push_back(ray_hit(state, ray, e.key, e.hit));
         return {};
     });
 }
@@ -156,8 +161,8 @@ Result<std::optional<ShapeHit>> cast_shape(const World& world, const Shape& shap
             return limit_of(ray, nearest);
         });
         if (!nearest.found_any()) return std::optional<ShapeHit>();
-        return std::optional(
-            ShapeHit{found(state, nearest.collider), float_below(nearest.distance), touch.point, touch.normal});
+        return std::optional(ShapeHit{found(state, nearest.collider), float_below(nearest.distance), touch.point,
+                                      touch.normal, triangle_at(state, nearest.collider, touch.triangle)});
     });
 }
 

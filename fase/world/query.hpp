@@ -39,11 +39,19 @@ struct Found {
     friend bool operator==(const Found&, const Found&) = default;
 };
 
+/// The triangle of a mesh.
+struct MeshTriangle {
+    std::uint32_t number = no_index;  ///< as passed to CollisionMesh::build(); no_index: the collider is no mesh
+    std::uint8_t material = 0;        ///< MeshOptions::materials
+    friend bool operator==(const MeshTriangle&, const MeshTriangle&) = default;
+};
+
 /// The point where a ray hits a collider.
 struct RayHit : Found {
     float distance = 0;  ///< metres from the ray's origin; hits are sorted before the rounding to float
     Vec3d point;         ///< world
     Vec3 normal;         ///< unit, world, against the ray; the reversed ray direction when the ray starts inside
+    MeshTriangle triangle{};
     friend bool operator==(const RayHit&, const RayHit&) = default;
 };
 
@@ -52,6 +60,7 @@ struct ShapeHit : Found {
     float distance = 0;  ///< metres that the shape moves, rounded down so that it does not overlap there
     Vec3d point;         ///< world, on the collider
     Vec3 normal;         ///< unit, world, from the collider to the shape
+    MeshTriangle triangle{};
     friend bool operator==(const ShapeHit&, const ShapeHit&) = default;
 };
 

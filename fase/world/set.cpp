@@ -204,9 +204,10 @@ Result<void> World::set_kind(BodyId body, BodyKind kind) {
         dynamics::BodyTraits& traits = state.bodies.traits[body.index];
         if (kind == BodyKind::Dynamic)
             for (std::uint32_t c = traits.first_collider; c != no_index; c = state.colliders[c].next)
-                if (!state.colliders[c].sensor &&
-                    std::holds_alternative<HalfSpace>(state.colliders.shapes[state.colliders[c].shape].shape))
-                    return refused("World::set_kind", "a body with a half-space", "a body whose shapes have a mass");
+                if (const Shape& shape = state.colliders.shapes[state.colliders[c].shape].shape;
+                    !state.colliders[c].sensor && !is_solid(shape))
+                    return refused("World::set_kind", std::string("a body with a ") + noun_of(shape),
+                                   "a body whose shapes have a mass");
         if (traits.kind == kind) return {};
         BodyEdit edit = edit_of(state, body.index);
         edit.kind = kind;

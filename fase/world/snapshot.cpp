@@ -14,7 +14,7 @@ namespace fase {
 namespace {
 
 using dynamics::Contact;
-constexpr std::uint32_t snapshot_version = 4;
+constexpr std::uint32_t snapshot_version = 5;
 constexpr char snapshot_magic[8] = {'F', 'A', 'S', 'E', 'S', 'N', 'A', 'P'};
 constexpr std::size_t head_size = sizeof snapshot_magic + 4 + 8 + 8;
 
@@ -68,6 +68,7 @@ template <class T> std::size_t smallest_size() {
 struct ReadArchive {
     static constexpr bool reads = true, saves = true;
     std::span<const std::byte> bytes;
+    const ColliderTable* known = nullptr;  ///< whose meshes need not be built again
     std::size_t at = 0;
     bool failed = false;
     template <Number T> void number(T& value) {
@@ -148,7 +149,7 @@ template <class A> void describe(A& a, Collider& c) {
         c.filter.mask, c.filter.group, c.user);
 }
 template <class A> void describe(A& a, Contact& c) {
-    if constexpr (A::saves) all(a, c.generation_a, c.generation_b);
+    if constexpr (A::saves) all(a, c.generation_a, c.generation_b, c.on_mesh);
     all(a, c.collider_a, c.collider_b, c.body_a, c.body_b, c.manifolds, c.coloured, c.points, c.sensor, c.sensor_is_b,
         c.touching, c.reusable, c.nearest, c.reuse_distance, c.b_from_a, c.rotation_a, c.rotation_b);
 }
@@ -169,9 +170,83 @@ template <class A> void describe(A& a, ConvexHull::Face& f) {
     all(a, f.plane.normal, f.plane.offset, f.first, f.count);
 }
 template <class A> void describe(A& a, ConvexHull::Edge& e) { all(a, e.from, e.to, e.face_a, e.face_b); }
+template <class A> void describe(A& a, std::array<std::uint32_t, 3>& corners) {
+    all(a, corners[0], corners[1], corners[2]);
+}
+
+/// The lists of a mesh: the same for writing and for reading.
+struct MeshLists {
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    std::vector<std::uint32_t> numbers;
+    std::vector<std::uint8_t> materials;
+    MeshReport report;
+    bool two_sided = false;
+};
+template <class A> void describe(A& a, MeshLists& m) {
+    all(a, m.vertices, m.corners, m.numbers, m.materials, m.report.degenerate, m.report.duplicate, m.report.open_edges,
+        m.report.non_manifold_edges, m.two_sided);
+}
+template <class A> void describe_data(A& a, const CollisionMesh& mesh) {
+    MeshLists lists{{mesh.vertices().begin(), mesh.vertices().end()},
+                    {},
+                    {},
+                    {mesh.materials().begin(), mesh.materials().end()},
+                    mesh.report(),
+                    mesh.two_sided()};
+    for (std::size_t place = 0; place < mesh.size(); ++place) {
+        lists.corners.push_back(mesh.corners(place));
+        lists.numbers.push_back(mesh.number(place));
+    }
+    describe(a, lists);
+}
+void read_mesh(ReadArchive& a, Mesh& mesh, std::uint64_t hash) {
+    std::uint64_t size = 0;
+    a.number(size);
+    if (a.failed || size > a.bytes.size() - a.at) {
+        a.failed = true;
+        return;
+    }
+    if (a.known != nullptr)
+        for (const SharedShape& shared : a.known->shapes)
+            if (const auto* same = std::get_if<Mesh>(&shared.shape);
+                same != nullptr && same->data->content_hash() == hash)
+                mesh.data = same->data;
+    if (mesh.data != nullptr) {
+        a.at += size;
+        return;
+    }
+    const std::size_t end = a.at + size;
+    MeshLists lists;
+    describe(a, lists);
+    a.failed = a.failed || a.at != end;
+    if (a.failed) return;
+    auto built = detail::assemble_mesh(std::move(lists.vertices), std::move(lists.corners), std::move(lists.numbers),
+                                       std::move(lists.materials), lists.report, lists.two_sided);
+    a.failed = !built || (*built)->content_hash() != hash;
+    if (!a.failed) mesh.data = *std::move(built);
+}
+
 template <class A, SizedShape S> void describe(A& a, S& shape) {
     for (const ShapeSize<S>& size : S::sizes) a.number(size.in(shape));
 }
+/// A mesh is hashed by its content's hash. It is saved as its lists, after their hash and size: a world that has the
+/// mesh already skips them.
+template <class A> void describe(A& a, Mesh& mesh) {
+    describe(a, mesh.scale);
+    std::uint64_t hash = mesh.data ? mesh.data->content_hash() : 0;
+    a.number(hash);
+    if constexpr (A::reads) {
+        read_mesh(a, mesh, hash);
+    } else if constexpr (A::saves) {
+        SizeArchive measure;
+        describe_data(measure, *mesh.data);
+        std::uint64_t size = measure.size;
+        a.number(size);
+        describe_data(a, *mesh.data);
+    }
+}
+
 template <class A> void describe(A& a, ConvexHull& s) { all(a, s.vertices, s.faces, s.face_vertices, s.edges); }
 
 template <class A> void describe(A& a, SharedShape& s) {
@@ -369,7 +444,7 @@ Result<IdMap> World::restore(std::span<const std::byte> snapshot) {
         const auto payload = payload_of(snapshot);
         if (!payload) return payload.error();
         auto next = std::make_unique<WorldState>();
-        ReadArchive archive{*payload};
+        ReadArchive archive{*payload, &state_->colliders};
         describe(archive, *next);
         const std::string_view wrong =
             archive.failed || archive.at != payload->size() ? "an incomplete state" : wrong_part(*next);

@@ -125,7 +125,7 @@ TEST(Bounds, contain_points_of_the_surface) {
             const QuatOf<Exact> rotation = exact_rotation(pose);
             const Aabb box = bounds(shape, pose);
             for (const Vec3 p : sample_points(shape, 12)) {
-                if (std::holds_alternative<HalfSpace>(shape)) continue;
+                if (!is_solid(shape)) continue;
                 // Mesh vertices are rounded to float and may be outside by that error.
                 const Vec3e inside = exact(p) * (1 - 0x1p-22L);
                 ASSERT_TRUE(contains_point(box, exact(pose.position) + rotate(rotation, inside))) << name_of(shape);
@@ -193,7 +193,7 @@ TEST(OuterRadius, is_the_distance_of_the_farthest_point) {
     Random random(4);
     for (int round = 0; round < 200; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
-            if (std::holds_alternative<HalfSpace>(shape)) continue;
+            if (!is_solid(shape)) continue;
             const float radius = outer_radius(shape);
             float farthest = 0;
             for (const Vec3 p : sample_points(shape, 16)) farthest = std::max(farthest, length(p));
@@ -213,7 +213,7 @@ TEST(InnerRadius, sphere_around_the_centre_is_inside) {
     Random random(5);
     for (int round = 0; round < 200; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
-            if (std::holds_alternative<HalfSpace>(shape)) continue;
+            if (!is_solid(shape)) continue;
             const float radius = inner_radius(shape);
             ASSERT_GT(radius, 0) << name_of(shape);
             const Vec3 centre = mass_properties(shape, 1).centre;

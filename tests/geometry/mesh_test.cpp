@@ -25,7 +25,7 @@ TEST(TriangleMesh, of_every_solid_is_closed_and_faces_outward) {
     Random random(1);
     for (int round = 0; round < 50; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
-            if (std::holds_alternative<HalfSpace>(shape)) continue;
+            if (!is_solid(shape)) continue;
             const int detail = 1 + static_cast<int>(random.below(40));
             const TriangleMesh mesh = triangles(shape, detail);
             ASSERT_EQ(mesh.indices.size() % 3, 0u);
@@ -49,7 +49,7 @@ TEST(TriangleMesh, of_every_solid_has_its_volume_within_the_stated_tolerance) {
     Random random(2);
     for (int round = 0; round < 50; ++round) {
         for (const Shape& shape : test::one_of_each(random)) {
-            if (std::holds_alternative<HalfSpace>(shape)) continue;
+            if (!is_solid(shape)) continue;
             const double expected = mass_properties(shape, 1).mass;
             const double found = volume(triangles(shape, 64));
             ASSERT_LE(found, expected * (1 + 1e-5)) << name_of(shape);
@@ -90,7 +90,7 @@ TEST(TriangleMesh, of_a_half_space_is_a_square_that_faces_up) {
 TEST(SamplePoints, reach_as_far_as_the_shape) {
     Random random(3);
     for (const Shape& shape : test::one_of_each(random)) {
-        if (std::holds_alternative<HalfSpace>(shape)) continue;
+        if (!is_solid(shape)) continue;
         const Aabb box = bounds(shape, {});
         Aabb around;
         for (const Vec3 p : sample_points(shape, 8)) around = merge(around, {p, p});

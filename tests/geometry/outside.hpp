@@ -28,6 +28,24 @@ inline double outside(const ConvexHull& s, Vec3d p) {
     return farthest;
 }
 inline double outside(const HalfSpace&, Vec3d p) { return p.y; }
+/// How far the point is from the nearest triangle: a mesh has no inside.
+inline double outside(const Mesh& s, Vec3d p) {
+    double nearest = 1e300;
+    for (std::size_t t = 0; t < s.data->size(); ++t) {
+        const auto [a, b, c] = s.triangle(t);
+        const Vec3d corners[] = {to_double(a), to_double(b), to_double(c)};
+        const Vec3d normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+        bool over = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3d from = corners[k], along = corners[(k + 1) % 3] - from;
+            over = over && dot(cross(normal, along), p - from) >= 0;
+            const double at = std::clamp(dot(along, p - from) / length_squared(along), 0.0, 1.0);
+            nearest = std::min(nearest, length(from + along * at - p));
+        }
+        if (over) nearest = std::min(nearest, std::abs(dot(normal, p - corners[0])));
+    }
+    return nearest;
+}
 inline double outside(const Shape& shape, Vec3d p) {
     return std::visit([&](const auto& s) { return outside(s, p); }, shape);
 }

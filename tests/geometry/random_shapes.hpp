@@ -6,6 +6,7 @@
 
 #include "fase/core/random.hpp"
 #include "fase/geometry/hull_builder.hpp"
+#include "fase/geometry/mesh.hpp"
 #include "fase/geometry/shapes.hpp"
 #include "fase/math/pose.hpp"
 #include "tests/geometry/outside.hpp"
@@ -47,6 +48,12 @@ inline ConvexHull random_shape(Random& random, std::type_identity<ConvexHull>) {
     for (Vec3& p : points) p += away;
     Result<ConvexHull> hull = build_convex_hull(points);
     return hull ? *hull : *build_convex_hull(random_points(random, 20));
+}
+/// The surface of a random hull, scaled and perhaps mirrored.
+inline Mesh random_shape(Random& random, std::type_identity<Mesh>) {
+    const TriangleMesh surface = triangles(random_shape(random, std::type_identity<ConvexHull>{}));
+    const auto scale = [&] { return random.between(0.3f, 3) * (random.below(3) == 0 ? -1.0f : 1.0f); };
+    return {*CollisionMesh::build(surface.positions, surface.indices), {scale(), scale(), scale()}};
 }
 
 template <NamedShape S> S random_shape(Random& random) { return random_shape(random, std::type_identity<S>{}); }

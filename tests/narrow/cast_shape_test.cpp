@@ -182,7 +182,7 @@ TEST(CastShape, OfAllKindsEqualsBisectionOnTheDistance) {
     Random random(2);
     int hits = 0, misses = 0;
     for (int i = 0; i < 6000; ++i) {
-        const Case c = random_case(random, random.below(AllShapes::count), random.below(AllShapes::count));
+        const Case c = random_case(random, random.below(solid_or_ground_kinds), random.below(solid_or_ground_kinds));
         if (std::holds_alternative<HalfSpace>(c.mover) && std::holds_alternative<HalfSpace>(c.target)) continue;
         const auto hit = cast(c);
         ++(hit ? hits : misses);
@@ -208,7 +208,7 @@ TEST(CastShape, OfNeedlesPlatesAndDustEqualsBisection) {
 RC_GTEST_PROP(CastShape, IsTheSameSeenFromTheTarget, (std::uint64_t seed)) {
     Random random(seed);
     for (int i = 0; i < 20; ++i) {
-        const Case c = random_case(random, random.below(AllShapes::count), random.below(AllShapes::count));
+        const Case c = random_case(random, random.below(solid_or_ground_kinds), random.below(solid_or_ground_kinds));
         const Case swapped{c.target, c.mover, c.target_pose, c.from, -c.direction, c.length};
         const auto hit = cast(c), back = cast(swapped);
         if (hit.has_value() != back.has_value()) {  // a grazing cast, or exactly at the end

@@ -29,6 +29,8 @@ inline void scale(Shape& shape, float by) {
         [by]<class S>(S& s) {
             if constexpr (SizedShape<S>) {
                 for (const ShapeSize<S>& size : S::sizes) size.in(s) *= by;
+            } else if constexpr (std::is_same_v<S, Mesh>) {
+                s.scale *= by;
             } else {
                 for (Vec3& v : s.vertices) v *= by;
                 for (ConvexHull::Face& face : s.faces) face.plane.offset *= by;

@@ -7,6 +7,7 @@
 
 #include "fase/core/random.hpp"
 #include "fase/geometry/hull_builder.hpp"
+#include "fase/geometry/mesh.hpp"
 #include "fase/geometry/shapes.hpp"
 #include "fase/math/transform_d.hpp"
 #include "tests/geometry/outside.hpp"
@@ -73,6 +74,12 @@ inline ConvexHull shape_of_size(Vec3 size, Random& random, std::type_identity<Co
     return random_hull(random, count, max(size, Vec3{min_size, min_size, min_size}));
 }
 
+/// The surface of a random hull.
+inline Mesh shape_of_size(Vec3 size, Random& random, std::type_identity<Mesh>) {
+    const TriangleMesh surface = triangles(shape_of_size(size, random, std::type_identity<ConvexHull>{}));
+    return {*CollisionMesh::build(surface.positions, surface.indices)};
+}
+
 /// A shape of kind `kind` (index into AllShapes) with sizes between 1 / `ratio` and 1; hulls at least 1 / 100, because
 /// thinner ones are refused.
 inline Shape random_shape(Random& random, std::size_t kind, float ratio = 4) {
@@ -104,7 +111,11 @@ inline double gap_along(const Shape& a, const Shape& b, const TransformD& b_in_a
     return dot(n, on_b - support(a, n));
 }
 
-/// Number of bounded kinds: all except the half-space, which is the last.
-inline constexpr std::size_t bounded_kinds = AllShapes::count - 1;
+/// Number of kinds that are no meshes: all except the last.
+inline constexpr std::size_t solid_or_ground_kinds = AllShapes::count - 1;
+/// Number of bounded solid kinds: all of these except the half-space, which is the last of them.
+inline constexpr std::size_t bounded_kinds = solid_or_ground_kinds - 1;
+static_assert(std::is_same_v<std::variant_alternative_t<solid_or_ground_kinds, Shape>, Mesh> &&
+              std::is_same_v<std::variant_alternative_t<bounded_kinds, Shape>, HalfSpace>);
 
 }  // namespace fase::test

@@ -197,7 +197,7 @@ TEST(GltfHierarchy, ScalesAndMirrorsShapes) {
     EXPECT_TRUE(warns(scene, "colliders of nodes with a zero scale are skipped"));
 }
 
-TEST(GltfMeshes, BecomeHullsOrGiveAWarning) {
+TEST(GltfMeshes, BecomeHullsAndCollisionMeshes) {
     const Scene scene = read("meshes.gltf");
     const ConvexHull& hull = shape_of<ConvexHull>(scene, body_named(scene, "hull"));
     EXPECT_EQ(hull.vertices.size(), 6u);
@@ -205,15 +205,17 @@ TEST(GltfMeshes, BecomeHullsOrGiveAWarning) {
     const Aabb stretched = box_of(scene, body_named(scene, "long hull"));
     expect_near(stretched.lo, Vec3{4, 1, -1}, 1e-4);
     expect_near(stretched.hi, Vec3{6, 5, 1}, 1e-4);
-    EXPECT_TRUE(warns(scene, "triangle-mesh colliders are not simulated yet"));
-    for (const Body& body : scene.bodies) EXPECT_NE(body.name, "triangles") << "an empty body";
+    const fase::Mesh& mesh = shape_of<fase::Mesh>(scene, body_named(scene, "triangles"));
+    EXPECT_EQ(mesh.data->size(), 8u);
+    EXPECT_TRUE(mesh.data->two_sided());
+    EXPECT_EQ(mesh.data->report().open_edges, 0u);
 }
 
 TEST(GltfMeshes, AreKeptAsVisuals) {
     const Scene scene = read("meshes.gltf");
     ASSERT_EQ(scene.meshes.size(), 1u) << "one mesh shared by all";
     EXPECT_EQ(scene.meshes[0].indices.size(), 24u);
-    ASSERT_EQ(scene.scenery.size(), 2u);
+    ASSERT_EQ(scene.scenery.size(), 1u);
     const auto scaled =
         std::find_if(scene.scenery.begin(), scene.scenery.end(), [](const Visual& v) { return v.position.z == 9; });
     ASSERT_NE(scaled, scene.scenery.end());

@@ -8,8 +8,8 @@
 
 namespace fase::dynamics {
 
-/// Names one manifold of a pair from step to step: the children of compounds and the triangle of a mesh that touch.
-/// All 0 for convex shapes, which have one manifold.
+/// Names one manifold of a pair from step to step: the children of compounds, and the triangle of a mesh by its number
+/// (see CollisionMesh). All 0 for convex shapes, which have one manifold.
 struct ManifoldKey {
     std::uint32_t child_a = 0, child_b = 0;
     std::uint32_t triangle = 0;
@@ -60,6 +60,7 @@ struct Contact {
     bool sensor_is_b = false;    ///< of a sensor contact: b is the sensor
     bool touching = false;       ///< as reported to the user by events
     bool reusable = false;       ///< the manifolds may be reused in later steps
+    bool on_mesh = false;        ///< either collider is a mesh: any number of manifolds
     float nearest = 0;           ///< the smallest separation at the beginning of the last step
 
     // When the manifolds were computed.

@@ -39,12 +39,12 @@ struct PlanarFrame {
 
 /// Chooses four points of `count` (more than 4): the deepest, the farthest from it, and the farthest on both sides of
 /// the line through these two (or the one that adds most area when a side is empty); stores their indices in ascending
-/// order. A later point replaces an earlier one only when it is better by 2 %, so that noise does not change the
-/// choice. `at_u(i)`, `at_v(i)`, `height(i)` read point i; heights that differ by less than `tolerance` (metres) are
-/// equal. Returns the number of chosen points: 4, or fewer when all are on a line. Cost: 3 passes.
+/// order. A later point replaces an earlier one only when it is better by `min_ratio`, so that noise does not change
+/// the choice. `at_u(i)`, `at_v(i)`, `height(i)` read point i; heights that differ by less than `tolerance` (metres)
+/// are equal. Returns the number of chosen points: 4, or fewer when all are on a line. Cost: 3 passes.
 template <class U, class V, class W>
-int choose_four(int count, const U& at_u, const V& at_v, const W& height, float tolerance, std::array<int, 4>& chosen) {
-    constexpr float min_ratio = 1.02f;
+int choose_four(int count, const U& at_u, const V& at_v, const W& height, float tolerance, std::array<int, 4>& chosen,
+                float min_ratio = 1.02f) {
     int deepest = 0;
     for (int i = 1; i < count; ++i) {
         if (height(i) < height(deepest) - tolerance) deepest = i;

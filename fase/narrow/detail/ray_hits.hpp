@@ -1,7 +1,9 @@
 #pragma once
 /// Ray casts against each kind of shape, in the shape's frame.
+#include <cstdint>
 #include <optional>
 
+#include "fase/core/no_index.hpp"
 #include "fase/geometry/shapes.hpp"
 
 namespace fase::narrow {
@@ -14,9 +16,10 @@ struct LocalRay {
 
 /// The hit of a ray on a shape, in the shape's frame.
 struct LocalHit {
-    double distance = 0;  ///< along the ray: 0 to its length
-    Vec3d normal;         ///< unit, outward, in the frame of the shape; not set when `inside`
-    bool inside = false;  ///< the ray starts in the shape or on its surface; `distance` is 0
+    double distance = 0;                ///< along the ray: 0 to its length
+    Vec3d normal;                       ///< unit, outward, in the frame of the shape; not set when `inside`
+    bool inside = false;                ///< the ray starts in the shape or on its surface; `distance` is 0
+    std::uint32_t triangle = no_index;  ///< of a mesh: its place (see CollisionMesh)
 };
 
 /// Returns the point where the ray enters the solid; nullopt: none before its end. Shapes are closed: touching counts,
@@ -31,5 +34,9 @@ struct LocalHit {
 /// Generalized two- and three-dimensional clipping.
 [[nodiscard]] std::optional<LocalHit> ray_hit(const ConvexHull& hull, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const HalfSpace& ground, const LocalRay& ray);
+/// A one-sided mesh is hit from its front only. Watertight: a ray through an edge or a vertex that triangles share hits
+/// one of them. Of hits at the same distance, that with the smallest place counts. Source: Woop, Benthin, Wald 2013,
+/// Watertight ray/triangle intersection; in double.
+[[nodiscard]] std::optional<LocalHit> ray_hit(const Mesh& mesh, const LocalRay& ray);
 
 }  // namespace fase::narrow

@@ -257,9 +257,11 @@ private:
         Collider collider;
         collider.def.pose.position = checked_float(json, position);
         if (!place_shape(json, use, linear, collider)) return;
-        if (std::holds_alternative<HalfSpace>(scene_.shapes[collider.shape]) &&
-            scene_.bodies[body_index].def.kind == BodyKind::Dynamic) {
-            warnings_.add("infinite planes on moving bodies are skipped", Harm::Missing);
+        const Shape& shape = scene_.shapes[collider.shape];
+        if (!is_solid(shape) && !use.sensor && scene_.bodies[body_index].def.kind == BodyKind::Dynamic) {
+            warnings_.add(is_mesh(shape) ? "triangle meshes on dynamic bodies are skipped: they have no mass"
+                                         : "infinite planes on moving bodies are skipped",
+                          Harm::Missing);
             return;
         }
         collider.name = document_.name(node) == scene_.bodies[body_index].name ? std::string() : document_.name(node);
@@ -289,10 +291,6 @@ private:
             warnings_.add("colliders without a supported shape are skipped", Harm::Missing);
             return false;
         }
-        if (!source.shape && !source.convex) {
-            warnings_.add("triangle-mesh colliders are not simulated yet", Harm::Missing);
-            return false;
-        }
         if (!(std::abs(determinant(linear)) > 1e-18)) {
             warnings_.add("colliders of nodes with a zero scale are skipped", Harm::Missing);
             return false;
@@ -305,8 +303,10 @@ private:
         if (inserted) {
             if (source.shape)
                 make_scaled(node, *source.shape, rigid, map, entry->second);
-            else
+            else if (source.convex)
                 make_hull(source, map, entry->second);
+            else
+                make_mesh(source, map, entry->second);
         }
         collider.shape = entry->second.first;
         if (!rigid) collider.def.pose.rotation = entry->second.second;
@@ -330,28 +330,61 @@ private:
         out = {add_shape(std::move(scaled->shape)), scaled->rotation};
     }
 
+    /// Calls f(mesh, placement) for each mesh of a collider.
+    template <class F> void for_each_mesh(const ShapeSource& source, const F& f) {
+        if (source.mesh) f(*source.mesh, Placement{});
+        if (!source.node) return;
+        document_.walk(*source.node, {}, [&](std::uint32_t node, const Placement& place) {
+            if (const auto mesh = index_in(document_.nodes()[node], "mesh", document_.meshes().size(), "meshes"))
+                f(*mesh, place);
+        });
+    }
+
     void make_hull(const ShapeSource& source, const Mat3& map, std::pair<std::uint32_t, Quat>& out) {
         std::vector<Vec3> points;
-        const auto gather = [&](std::uint32_t mesh, const Placement& place) {
+        for_each_mesh(source, [&](std::uint32_t mesh, const Placement& place) {
             for (const Primitive& primitive : document_.primitives(mesh)) {
                 if (primitive.mode < 4) continue;
                 for (const Vec3 p : document_.positions(primitive))
                     points.push_back(map * checked_float(source.json, place.linear * to_double(p) + place.position));
             }
-        };
-        if (source.mesh) gather(*source.mesh, {});
-        if (source.node) {
-            document_.walk(*source.node, {}, [&](std::uint32_t node, const Placement& place) {
-                if (const auto mesh = index_in(document_.nodes()[node], "mesh", document_.meshes().size(), "meshes"))
-                    gather(*mesh, place);
-            });
-        }
+        });
         Result<ConvexHull> hull = build_convex_hull(points);
         if (!hull) {
             warnings_.add_named("a convex collider is skipped: {}", hull.error().problem, Harm::Missing);
             return;
         }
         out.first = add_shape(*std::move(hull));
+        document_.spend(source.json, scene_.shapes[out.first]);
+    }
+
+    /// Builds the triangle mesh of a collider: two-sided, because files do not say which side is the ground.
+    void make_mesh(const ShapeSource& source, const Mat3& map, std::pair<std::uint32_t, Quat>& out) {
+        std::vector<Vec3> positions;
+        std::vector<std::uint32_t> indices;
+        for_each_mesh(source, [&](std::uint32_t mesh, const Placement& place) {
+            const bool mirrored = determinant(place.linear) * double(determinant(map)) < 0;
+            for (const Primitive& primitive : document_.primitives(mesh)) {
+                if (primitive.mode < 4) continue;
+                const auto first = static_cast<std::uint32_t>(positions.size());
+                const std::vector<Vec3> own = document_.positions(primitive);
+                for (const Vec3 p : own)
+                    positions.push_back(map * checked_float(source.json, place.linear * to_double(p) + place.position));
+                const std::vector<std::uint32_t> triangles = document_.triangles(primitive, own.size());
+                for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
+                    for (const std::size_t k : {0, mirrored ? 2 : 1, mirrored ? 1 : 2})
+                        indices.push_back(first + triangles[i + k]);
+            }
+        });
+        auto data = CollisionMesh::build(positions, indices, {.two_sided = true});
+        if (!data) {
+            warnings_.add_named("a triangle-mesh collider is skipped: {}", data.error().problem, Harm::Missing);
+            return;
+        }
+        const MeshReport& report = (*data)->report();
+        if (report.degenerate + report.duplicate > 0)
+            warnings_.add("triangles without an area, and duplicates, of collision meshes are left out");
+        out.first = add_shape(fase::Mesh{*std::move(data)});
         document_.spend(source.json, scene_.shapes[out.first]);
     }
 

@@ -290,6 +290,7 @@ void Document::spend(JsonValue at, std::uint64_t bytes) {
 }
 
 void Document::spend(JsonValue at, const Shape& shape) {
+    if (const auto* mesh = std::get_if<fase::Mesh>(&shape)) spend(at, mesh->data->bytes());
     if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
         spend(at, hull->vertices.size() * sizeof(Vec3) + hull->faces.size() * sizeof(ConvexHull::Face) +
                       hull->face_vertices.size() * sizeof(std::uint32_t) +

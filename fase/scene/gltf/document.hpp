@@ -65,7 +65,7 @@ public:
     /// Counts memory that the file requires. Refuses the file, with `at` as the place, above 8 times the files plus 32
     /// MiB.
     void spend(JsonValue at, std::uint64_t bytes);
-    /// spend() for a generated shape; only hulls count.
+    /// spend() for a generated shape; only hulls and meshes count.
     void spend(JsonValue at, const Shape& shape);
 
 private:

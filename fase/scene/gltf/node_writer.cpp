@@ -11,7 +11,8 @@ namespace {
 
 bool is_default(const Material& m) { return m == Material{}; }
 
-/// Whether KHR_implicit_shapes has the shape: gltf_write.cpp writes these. All others are written as hulls.
+/// Whether KHR_implicit_shapes has the shape: gltf_write.cpp writes these. All others are written as the meshes of
+/// nodes.
 bool is_implicit(const Shape& shape) {
     return std::visit(
         []<class S>(const S&) {
@@ -170,7 +171,7 @@ void NodeWriter::write_motion(const Body& body) {
 void NodeWriter::write_collider(const Collider& collider) {
     nodes_.key(collider.def.sensor ? "trigger" : "collider").open('{').key("geometry").open('{');
     if (const auto hull = hull_nodes_.find(collider.shape); hull != hull_nodes_.end()) {
-        nodes_.key("node").number(hull->second).key("convexHull").flag(true);
+        nodes_.key("node").number(hull->second).key("convexHull").flag(!is_mesh(scene_.shapes[collider.shape]));
     } else {
         nodes_.key("shape").number(implicit_.of(collider.shape));
     }

@@ -70,8 +70,7 @@ bool collider_is_right(const WorldState& s, std::uint32_t index) {
     if (!s.bodies.ids.alive_at(c.body)) return false;
     if (!check(ColliderDef{c.in_body, c.material, c.density, c.filter, c.sensor, c.user})) return false;
     if (!(box.lo.x <= box.hi.x && box.lo.y <= box.hi.y && box.lo.z <= box.hi.z)) return false;
-    return s.bodies.traits[c.body].kind != BodyKind::Dynamic || c.sensor ||
-           !std::holds_alternative<HalfSpace>(s.colliders.shapes[c.shape].shape);
+    return s.bodies.traits[c.body].kind != BodyKind::Dynamic || c.sensor || is_solid(s.colliders.shapes[c.shape].shape);
 }
 
 /// Every collider is valid and in the list of its body; changed ones are listed.
@@ -193,6 +192,8 @@ bool contact_is_right(const WorldState& s, const Contact& c, broad::Pair pair, b
     if (!current) return changed;
     const Collider &a = s.colliders[pair.a], &b = s.colliders[pair.b];
     if (c.body_a != a.body || c.body_b != b.body) return false;
+    const auto is_on_mesh = [&](const Collider& x) { return is_mesh(s.colliders.shapes[x.shape].shape); };
+    if (c.on_mesh != (is_on_mesh(a) || is_on_mesh(b))) return false;
     if (c.sensor != (a.sensor || b.sensor) || c.sensor_is_b != b.sensor || (a.sensor && b.sensor)) return false;
     const BodyTraits &ta = s.bodies.traits[c.body_a], &tb = s.bodies.traits[c.body_b];
     if (is_active != (ta.motion_state == MotionState::Awake || tb.motion_state == MotionState::Awake)) return false;

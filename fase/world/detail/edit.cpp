@@ -165,6 +165,10 @@ std::uint64_t content_key(const Shape& shape) {
     };
     if (const auto* hull = std::get_if<ConvexHull>(&shape))
         for (const Vec3 v : hull->vertices) add(v);
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+        hasher.add(mesh->data->content_hash());
+        add(mesh->scale);
+    }
     const Aabb box = bounds(shape, Pose{});
     add(box.lo);
     add(box.hi);

@@ -106,6 +106,8 @@ void set_shape(WorldState& state, std::uint32_t body, const BodyShape& shape);
 [[nodiscard]] std::vector<std::uint32_t> share_shapes(WorldState& state, std::span<const ColliderShape> parts);
 /// Decrements the user count of a shared shape, and frees the shape at 0.
 void release_shape(WorldState& state, std::uint32_t index);
+/// What messages call a shape without a mass.
+[[nodiscard]] inline const char* noun_of(const Shape& shape) { return is_mesh(shape) ? "mesh" : "half-space"; }
 /// Returns the hash of a shape's content, SharedShape::key.
 [[nodiscard]] std::uint64_t content_key(const Shape& shape);
 

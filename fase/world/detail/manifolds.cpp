@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "fase/geometry/aabb.hpp"
 #include "fase/math/detail/float4.hpp"
@@ -156,6 +157,40 @@ void set_points(ContactManifold& m, const WorldManifold& world, Quat rotation_a)
     }
 }
 
+/// Gives a manifold the friction and the impulses of an old one.
+void take_over(ContactManifold& m, const ContactManifold& old, const PairMotion& motion, float match_distance) {
+    const Vec3 friction =
+        old.tangent * old.friction_impulse[0] + cross(old.normal, old.tangent) * old.friction_impulse[1];
+    m.friction_impulse[0] = dot(friction, m.tangent);
+    m.friction_impulse[1] = dot(friction, cross(m.normal, m.tangent));
+    m.twist_impulse = old.twist_impulse;
+    match_points(m, old, motion, match_distance);
+}
+
+/// Stores how the bodies stand where the manifolds are computed.
+void set_motion(Contact& c, std::span<const ContactManifold> manifolds, const BodyMotion& a, const BodyMotion& b) {
+    c.b_from_a = b.position - a.position;
+    c.rotation_a = a.rotation;
+    c.rotation_b = b.rotation;
+    c.nearest = nearest_of(manifolds);
+}
+
+/// Returns the old manifold that goes on as the new one, of those that no other takes; null: none.
+ContactManifold* match_of(const KeyedManifold& world, std::span<ContactManifold> old) {
+    constexpr float similar = 0.97f;
+    ContactManifold* best = nullptr;
+    float largest = similar;
+    for (ContactManifold& m : old) {
+        if (m.count == 0) continue;
+        if (m.key == world.key && dot(m.normal, world.normal) > 0) return &m;
+        const float cosine = dot(m.normal, world.normal);
+        if (!(cosine > largest)) continue;
+        largest = cosine;
+        best = &m;
+    }
+    return best;
+}
+
 }  // namespace
 
 bool reuse_manifolds(const ReuseInput& input) {
@@ -229,17 +264,26 @@ void store_manifold(Contact& c, ContactManifold& m, const WorldManifold& world, 
     c.manifolds = world.count > 0 ? 1 : 0;
     c.points = m.count;
     if (c.manifolds == 0) return;
-    c.b_from_a = b.position - a.position;
-    c.rotation_a = a.rotation;
-    c.rotation_b = b.rotation;
-    c.nearest = nearest_of({&m, 1});
-    if (!had_points) return;
-    const Vec3 friction =
-        old.tangent * old.friction_impulse[0] + cross(old.normal, old.tangent) * old.friction_impulse[1];
-    m.friction_impulse[0] = dot(friction, m.tangent);
-    m.friction_impulse[1] = dot(friction, cross(m.normal, m.tangent));
-    m.twist_impulse = old.twist_impulse;
-    match_points(m, old, motion, match_distance);
+    set_motion(c, {&m, 1}, a, b);
+    if (had_points) take_over(m, old, motion, match_distance);
+}
+
+void store_manifolds(Contact& c, std::span<ContactManifold> places, std::span<const KeyedManifold> worlds,
+                     const BodyMotion& a, const BodyMotion& b, const PairMotion& motion, float match_distance) {
+    std::vector<ContactManifold> old(places.begin(), places.begin() + c.manifolds);
+    c.manifolds = static_cast<std::uint16_t>(worlds.size());
+    c.points = 0;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        ContactManifold& m = places[i];
+        set_points(m, worlds[i], a.rotation);
+        m.key = worlds[i].key;
+        c.points = static_cast<std::uint16_t>(c.points + m.count);
+        ContactManifold* before = match_of(worlds[i], old);
+        if (before == nullptr) continue;
+        take_over(m, *before, motion, match_distance);
+        before->count = 0;
+    }
+    if (c.manifolds != 0) set_motion(c, places.first(worlds.size()), a, b);
 }
 
 }  // namespace fase

@@ -75,4 +75,15 @@ void store_manifold(dynamics::Contact& contact, dynamics::ContactManifold& manif
                     const dynamics::BodyMotion& a, const dynamics::BodyMotion& b, const PairMotion& motion,
                     float match_distance);
 
+/// A manifold in world axes and the key that names it in its contact.
+struct KeyedManifold : WorldManifold {
+    dynamics::ManifoldKey key;
+};
+
+/// Stores all manifolds of a contact; there are as many places or more. Each takes over impulses from the old one with
+/// the same key, or else from the one with the most similar normal.
+void store_manifolds(dynamics::Contact& contact, std::span<dynamics::ContactManifold> places,
+                     std::span<const KeyedManifold> worlds, const dynamics::BodyMotion& a,
+                     const dynamics::BodyMotion& b, const PairMotion& motion, float match_distance);
+
 }  // namespace fase
