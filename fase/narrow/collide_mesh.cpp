@@ -8,6 +8,7 @@
 
 #include "fase/geometry/bounds.hpp"
 #include "fase/narrow/detail/clip.hpp"
+#include "fase/narrow/detail/core_distance.hpp"
 #include "fase/narrow/detail/general.hpp"
 #include "fase/narrow/detail/polygon.hpp"
 #include "fase/narrow/detail/triangle_core.hpp"
@@ -21,6 +22,7 @@ constexpr double same_normal = 0.9999;
 /// A triangle near the shape, relative to the shape's position.
 struct NearTriangle {
     TriangleCore triangle;
+    std::uint32_t number = 0;  ///< results do not depend on the order of the tree
     std::uint32_t place = 0;
 };
 
@@ -35,12 +37,12 @@ struct FoundPoint {
 struct FoundContact {
     Vec3 normal;
     float nearest = 0;  ///< the smallest separation
-    std::uint32_t place = 0;
+    std::uint32_t number = 0, place = 0;
     std::uint32_t first = 0, count = 0;
     std::uint32_t group = 0;
 };
 
-std::uint32_t feature_of(std::uint32_t place, std::uint32_t feature) { return feature ^ (place * 0x9e3779b1u); }
+std::uint32_t feature_of(std::uint32_t number, std::uint32_t feature) { return feature ^ (number * 0x9e3779b1u); }
 
 CoreView view_of(const Shape& shape) {
     return std::visit(
@@ -104,7 +106,7 @@ public:
     }
 
 private:
-    /// Lists the triangles that the box of the shape touches, in the order of their places.
+    /// Lists the triangles that the box of the shape touches, in the order of their numbers.
     void gather() {
         memory_.near.clear();
         const Aabb in_mesh = rounded_outward(to_double(box_.lo) + origin_, to_double(box_.hi) + origin_);
@@ -115,9 +117,10 @@ private:
                 lo = min(lo, corner);
                 hi = max(hi, corner);
             }
-            if (overlaps(rounded_outward(lo, hi), box_)) memory_.near.push_back({triangle, place});
+            if (overlaps(rounded_outward(lo, hi), box_))
+                memory_.near.push_back({triangle, mesh_.data->number(place), place});
         });
-        std::ranges::sort(memory_.near, {}, &NearTriangle::place);
+        std::ranges::sort(memory_.near, {}, &NearTriangle::number);
         for (NearTriangle& near : memory_.near) {
             if (!mesh_.data->two_sided() || near.triangle.height(middle_) >= 0) continue;
             std::swap(near.triangle.corners[1], near.triangle.corners[2]);
@@ -137,14 +140,14 @@ private:
             add(near, face);
             return;
         }
-        const Manifold manifold = collide_cores(core_view(triangle), view_, as_local(), margin_);
-        if (manifold.count == 0) return;
-        if (dot(to_double(manifold.normal), triangle.normal) >= same_normal && face.count > 0) {
+        const Distance nearest = distance_of_cores(core_view(triangle), view_, at_);
+        if (!(nearest.distance <= margin_)) return;
+        if (dot(nearest.normal, triangle.normal) >= same_normal && face.count > 0) {
             add(near, face);
             return;
         }
-        switch (contact_at_edge(near, manifold)) {
-            case Edge::Free: add(near, manifold); break;
+        switch (contact_at_edge(near, nearest.normal, nearest.on_a)) {
+            case Edge::Free: add(near, collide_cores(core_view(triangle), view_, as_local(), margin_)); break;
             case Edge::Flat:
                 if (face.count > 0) add(near, face);
                 break;
@@ -169,9 +172,7 @@ private:
 
     /// Tells whether other triangles bar the normal of a contact at an edge or a corner. At a corner those bar it that
     /// touch the point and rise above the plane of the contact. An edge has contacts only where the surface bends down.
-    [[nodiscard]] Edge contact_at_edge(const NearTriangle& near, const Manifold& manifold) const {
-        const Vec3d normal = to_double(manifold.normal);
-        const Vec3d point = on_mesh(manifold, deepest(manifold));
+    [[nodiscard]] Edge contact_at_edge(const NearTriangle& near, Vec3d normal, Vec3d point) const {
         const bool beside_face = dot(normal, near.triangle.normal) >= same_normal;
         const bool at_corner = !beside_face && std::ranges::any_of(near.triangle.corners, [&](Vec3d corner) {
             return length_squared(corner - point) <= touch_ * touch_;
@@ -209,18 +210,14 @@ private:
         }
         return best;
     }
-    [[nodiscard]] static Vec3d on_mesh(const Manifold& manifold, std::size_t i) {
-        const ManifoldPoint& p = manifold.points[i];
-        return to_double(p.position) - to_double(manifold.normal) * (0.5 * double(p.separation));
-    }
-
     void add(const NearTriangle& near, const Manifold& manifold) {
-        FoundContact contact{manifold.normal, manifold.points[deepest(manifold)].separation, near.place};
+        if (manifold.count == 0) return;
+        FoundContact contact{manifold.normal, manifold.points[deepest(manifold)].separation, near.number, near.place};
         contact.first = static_cast<std::uint32_t>(memory_.points.size());
         contact.count = static_cast<std::uint32_t>(manifold.count);
         for (int i = 0; i < manifold.count; ++i) {
             const ManifoldPoint& p = manifold.points[static_cast<std::size_t>(i)];
-            memory_.points.push_back({p.position, p.separation, feature_of(near.place, p.feature)});
+            memory_.points.push_back({p.position, p.separation, feature_of(near.number, p.feature)});
         }
         memory_.contacts.push_back(contact);
     }
@@ -243,11 +240,9 @@ private:
         } else {
             const ClipPolygon polygon = frame.clip(feature);
             for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i) put(polygon.points[i]);
-            if (feature.rounded && feature.count > 2) {  // the lowest point of a tilted rim is between the samples
-                const ClipPoint p = frame.flatten({lowest_along(triangle.normal), 0x3fff});
-                const double size = length(feature.corners[0].position - feature.corners[1].position);
-                if (p.height - view_.radius < candidates.lowest() - 1e-3 * size && frame.contains(p)) put(p);
-            }
+            // The lowest point of a tilted rim is between its samples; that of a hull may be outside its lowest face.
+            const ClipPoint p = frame.flatten({lowest_along(triangle.normal), 0x3fff});
+            if (p.height - view_.radius < candidates.lowest() - 1e-5 && frame.contains(p)) put(p);
         }
         return candidates.reduced(to_float(triangle.normal));
     }
@@ -310,7 +305,7 @@ private:
         out_.found_.resize(groups);
         for (std::uint32_t g = 0; g < groups; ++g) out_.found_[g] = united(g);
         std::erase_if(out_.found_, [](const MeshManifold& m) { return m.manifold.count == 0; });
-        std::ranges::sort(out_.found_, {}, &MeshManifold::triangle);
+        std::ranges::sort(out_.found_, {}, [&](const MeshManifold& m) { return mesh_.data->number(m.triangle); });
     }
 
     /// Gives each contact the group of the deepest contact with about the same normal; returns the number of groups.
@@ -330,14 +325,16 @@ private:
         }
     }
 
-    [[nodiscard]] MeshManifold united(std::uint32_t number) const {
+    [[nodiscard]] MeshManifold united(std::uint32_t group) const {
         MeshManifold result;
         const FoundContact* leader = nullptr;
-        result.triangle = 0xffffffffu;
+        std::uint32_t smallest = 0xffffffffu;
         for (const FoundContact& c : memory_.contacts) {
-            if (c.group != number) continue;
+            if (c.group != group) continue;
             if (leader == nullptr || c.nearest < leader->nearest) leader = &c;
-            result.triangle = std::min(result.triangle, c.place);
+            if (c.number >= smallest) continue;
+            smallest = c.number;
+            result.triangle = c.place;
         }
         const Vec3 normal = leader->normal, u = any_perpendicular(normal), v = cross(normal, u);
         result.manifold.normal = normal;
@@ -358,7 +355,7 @@ private:
             points.count = kept;
         };
         for (const FoundContact& c : memory_.contacts) {
-            if (c.group != number) continue;
+            if (c.group != group) continue;
             for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
                 const FoundPoint& p = memory_.points[i];
                 const float pu = dot(p.position, u), pv = dot(p.position, v);

@@ -13,7 +13,7 @@ namespace fase::narrow {
 /// A place where a convex shape touches a mesh: its neighbouring triangles in about one plane.
 struct MeshManifold {
     Manifold manifold;           ///< the normal points from the mesh to the shape
-    std::uint32_t triangle = 0;  ///< the smallest place (see CollisionMesh) of its triangles
+    std::uint32_t triangle = 0;  ///< the place (see CollisionMesh) of that of its triangles with the smallest number
 };
 
 /// The contacts of one shape with one mesh, and memory that is used again from call to call.

@@ -120,12 +120,13 @@ void collide_with_meshes(const CollideTables& tables, std::span<const std::uint3
     });
     for (std::size_t i = 0; i < list.size(); ++i) {
         Contact& c = contacts[list[i]];
-        if (found[i].count <= c.capacity) continue;
-        contacts.manifolds.reserve(c, found[i].count);
-        update_materials(tables.colliders, contacts, list[i]);
+        if (found[i].count > c.capacity) contacts.manifolds.reserve(c, found[i].count);
     }
     parallel_ranges(tasks, list.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) store(tables, contacts[list[i]], found[i]);
+        for (std::size_t i = begin; i < end; ++i) {
+            store(tables, contacts[list[i]], found[i]);
+            update_materials(tables.colliders, contacts, list[i]);  // places in use for the first time have none
+        }
     });
 }
 

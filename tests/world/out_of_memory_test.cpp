@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "fase/broad/registry.hpp"
+#include "fase/geometry/mesh.hpp"
 #include "fase/world/query.hpp"
 #include "tests/failing_memory.hpp"
 #include "tests/world/worlds.hpp"
@@ -67,6 +68,8 @@ class OutOfMemory : public testing::TestWithParam<std::string> {};
 TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
     const Shape cylinder = Cylinder{0.31f, 0.2f};
     const std::vector<ColliderShape> compound{{cylinder}, {Box{}, {.sensor = true}}, {Sphere{0.37f}}, {cylinder}};
+    const TriangleMesh surface = triangles(Sphere{1});
+    const Shape mesh = Mesh{*CollisionMesh::build(surface.positions, surface.indices)};
     std::vector<std::byte> saved, foreign;
     const std::vector<Call> calls{
         {"add_body",
@@ -74,6 +77,9 @@ TEST_P(OutOfMemory, a_failed_edit_changes_nothing_and_the_next_one_works) {
              return s.world.add_body({.position = {3, 1, 0}}).status();
          }},
         {"add_body with a shape", [&](Scene& s) { return s.world.add_body({}, cylinder).status(); }},
+        {"CollisionMesh::build",
+         [&](Scene&) { return CollisionMesh::build(surface.positions, surface.indices).status(); }},
+        {"add_body with a mesh", [&](Scene& s) { return s.world.add_body({.kind = BodyKind::Static}, mesh).status(); }},
         {"add_body asleep", [&](Scene& s) { return s.world.add_body({.awake = false}, cylinder).status(); }},
         {"add_body with many shapes", [&](Scene& s) { return s.world.add_body({}, compound).status(); }},
         {"add_body with many shapes asleep",

@@ -100,7 +100,7 @@ Distance mesh_distance(const Mesh& a, const Shape& b, const TransformD& b_in_a) 
     if (std::holds_alternative<HalfSpace>(b)) return distance_from_half_space(a, b_in_a);
     Distance best;
     best.distance = infinity;
-    std::uint32_t best_place = no_index;
+    std::uint32_t best_number = no_index;
     for_each_placed(b, b_in_a, [&](const CoreView& core, const Aabb& box) {
         const float start = float_above(std::max(best.distance, 0.0));
         a.data->tree().visit_nearest(
@@ -108,9 +108,10 @@ Distance mesh_distance(const Mesh& a, const Shape& b, const TransformD& b_in_a) 
             [&](std::uint32_t place) {
                 const TriangleCore triangle(a, place);
                 const Distance here = distance_of_cores(core_view(triangle), core, b_in_a);
-                if (std::tie(here.distance, place) < std::tie(best.distance, best_place)) {
+                const std::uint32_t number = a.data->number(place);
+                if (std::tie(here.distance, number) < std::tie(best.distance, best_number)) {
                     best = here;
-                    best_place = place;
+                    best_number = number;
                 }
                 return float_above(std::max(best.distance, 0.0));
             });
@@ -155,12 +156,14 @@ float entry_of(const Aabb& box, const Aabb& mover, Vec3d origin, Vec3d direction
 std::optional<Advance> advance_to_mesh(const Mesh& target, const Shape& mover, const TransformD& start, Vec3d direction,
                                        double length) {
     std::optional<Advance> best;
-    std::uint32_t best_place = no_index;
+    std::uint32_t best_number = no_index;
     const auto consider = [&](const std::optional<Advance>& here, std::uint32_t place) {
         if (!here) return;
-        if (best && std::tie(here->distance, place) >= std::tie(best->distance, best_place)) return;
+        const std::uint32_t number = target.data->number(place);
+        if (best && std::tie(here->distance, number) >= std::tie(best->distance, best_number)) return;
         best = here;
-        best->triangle = best_place = place;
+        best->triangle = place;
+        best_number = number;
     };
     if (std::holds_alternative<HalfSpace>(mover)) {
         const Distance gap = distance_from_half_space(target, start);
@@ -221,7 +224,7 @@ public:
         if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
         const double sum = u + v + w;
         if (sum == 0) return std::nullopt;
-        return Hit{(u * p[0].z + v * p[1].z + w * p[2].z) / sum, sum < 0};
+        return Hit{(u * p[0].z + v * p[1].z + w * p[2].z) / sum, sum > 0};
     }
 
 private:
@@ -242,7 +245,7 @@ std::optional<LocalHit> ray_hit(const Mesh& mesh, const LocalRay& ray) {
         [&](std::uint32_t place) {
             const auto hit = sheared.on(mesh.triangle(place));
             if (hit && (hit->front || mesh.data->two_sided()) && hit->distance >= 0 && hit->distance <= nearest &&
-                (hit->distance < nearest || place < best)) {
+                (hit->distance < nearest || best == no_index || mesh.data->number(place) < mesh.data->number(best))) {
                 nearest = hit->distance;
                 best = place;
             }

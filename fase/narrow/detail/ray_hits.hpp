@@ -35,7 +35,7 @@ struct LocalHit {
 [[nodiscard]] std::optional<LocalHit> ray_hit(const ConvexHull& hull, const LocalRay& ray);
 [[nodiscard]] std::optional<LocalHit> ray_hit(const HalfSpace& ground, const LocalRay& ray);
 /// A one-sided mesh is hit from its front only. Watertight: a ray through an edge or a vertex that triangles share hits
-/// one of them. Of hits at the same distance, that with the smallest place counts. Source: Woop, Benthin, Wald 2013,
+/// one of them. Of hits at the same distance, that with the smallest number counts. Source: Woop, Benthin, Wald 2013,
 /// Watertight ray/triangle intersection; in double.
 [[nodiscard]] std::optional<LocalHit> ray_hit(const Mesh& mesh, const LocalRay& ray);
 

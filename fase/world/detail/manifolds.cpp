@@ -275,6 +275,9 @@ void store_manifolds(Contact& c, std::span<ContactManifold> places, std::span<co
     c.points = 0;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         ContactManifold& m = places[i];
+        const dynamics::ConstraintColour colour = m.colour;
+        m = {};  // a place may hold what an ended manifold left, which snapshots do not
+        m.colour = colour;
         set_points(m, worlds[i], a.rotation);
         m.key = worlds[i].key;
         c.points = static_cast<std::uint16_t>(c.points + m.count);

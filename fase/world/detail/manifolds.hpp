@@ -81,7 +81,7 @@ struct KeyedManifold : WorldManifold {
 };
 
 /// Stores all manifolds of a contact; there are as many places or more. Each takes over impulses from the old one with
-/// the same key, or else from the one with the most similar normal.
+/// the same key, or else from the one with the most similar normal. Their materials are then to be set.
 void store_manifolds(dynamics::Contact& contact, std::span<dynamics::ContactManifold> places,
                      std::span<const KeyedManifold> worlds, const dynamics::BodyMotion& a,
                      const dynamics::BodyMotion& b, const PairMotion& motion, float match_distance);
