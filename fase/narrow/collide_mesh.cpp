@@ -10,6 +10,7 @@
 #include "fase/narrow/detail/clip.hpp"
 #include "fase/narrow/detail/core_distance.hpp"
 #include "fase/narrow/detail/general.hpp"
+#include "fase/narrow/detail/gjk.hpp"
 #include "fase/narrow/detail/polygon.hpp"
 #include "fase/narrow/detail/triangle_core.hpp"
 
@@ -93,6 +94,7 @@ public:
         const Quat rotation = to_float(to_quat(pose.rotation));
         box_ = enlarged(bounds(shape, {{}, rotation}), margin * 1.001f);
         const float size = std::min(inner_radius(shape), 0.1f);
+        around_ = 1.001 * (double(outer_radius(shape)) + margin);
         touch_ = std::max(0.01f * size, 1e-5f);
         shallow_ = 2 * touch_;
     }
@@ -140,7 +142,7 @@ private:
             add(near, face);
             return;
         }
-        const Distance nearest = distance_of_cores(core_view(triangle), view_, at_);
+        const Distance nearest = distance_to(triangle);
         if (!(nearest.distance <= margin_)) return;
         if (dot(nearest.normal, triangle.normal) >= same_normal && face.count > 0) {
             add(near, face);
@@ -160,6 +162,19 @@ private:
                 break;
             case Edge::Ridge: break;  // the other triangle at the edge has the contact
         }
+    }
+
+    /// The distance of the shape from a triangle; beyond the margin only that it is.
+    [[nodiscard]] Distance distance_to(const TriangleCore& triangle) const {
+        const CoreView core = core_view(triangle);
+        GjkOptions options;
+        options.farther_than = margin_ + view_.radius;
+        options.tolerance = 1e-12;
+        const GjkResult apart = gjk(core, view_, at_, options);
+        if (apart.state == GjkResult::State::Farther) return {Aabb::infinity, {}, {}, {}};
+        if (apart.state == GjkResult::State::Overlap || !(apart.distance > 1e-4 * apart.scale))
+            return distance_of_cores(core, view_, at_);
+        return {apart.distance - view_.radius, apart.on_a, apart.on_b, apart.normal};
     }
 
     /// The lowest point of the shape's core along a normal.
@@ -410,6 +425,7 @@ private:
     Vec3d origin_;   ///< position of the shape in the mesh
     Vec3d middle_;
     double margin_, reach_;
+    double around_ = 0;   ///< radius of a sphere around the position that holds the shape and the margin
     double touch_ = 0;    ///< metres within which triangles touch each other
     double shallow_ = 0;  ///< metres of penetration that are never due to a side of the shape
     Aabb box_;            ///< of the shape, relative to its position, with the margin
