@@ -79,7 +79,8 @@ Done add_body(World& world, Numbers& numbers) {
     ColliderDef collider;
     collider.sensor = numbers.one_in(8);
     collider.material.restitution = numbers.one_in(3) ? 0.7f : 0.0f;
-    const Shape shape = random_shape(numbers.random(), 0.4f);
+    const bool is_ground = def.kind != BodyKind::Dynamic && numbers.one_in(2);
+    const Shape shape = is_ground ? random_mesh(numbers.random(), 4) : random_shape(numbers.random(), 0.4f);
     return done(world.add_body(def, shape, collider),
                 fmt::format("add_body(kind {}, {} at {}, awake {}, sensor {})", static_cast<int>(def.kind),
                             name_of(shape), text_of(def.position), def.awake, collider.sensor));

@@ -34,4 +34,21 @@ Shape random_shape(Random& random, float size) {
     return Box{{a, b, size}};
 }
 
+Shape random_mesh(Random& random, float size) {
+    constexpr std::uint32_t cells = 4;
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> indices;
+    const auto at = [&](std::uint32_t i) { return (static_cast<float>(i) / cells - 0.5f) * size; };
+    for (std::uint32_t i = 0; i <= cells; ++i)
+        for (std::uint32_t k = 0; k <= cells; ++k)
+            positions.push_back({at(i), random.between(-0.1f, 0.1f) * size, at(k)});
+    for (std::uint32_t i = 0; i < cells; ++i)
+        for (std::uint32_t k = 0; k < cells; ++k) {
+            const std::uint32_t a = i * (cells + 1) + k, b = a + 1, c = a + cells + 1;
+            indices.insert(indices.end(), {a, b, c, c, b, c + 1});
+        }
+    const auto mesh = CollisionMesh::build(positions, indices, {.two_sided = random.below(2) == 0});
+    return mesh ? Shape(Mesh{*mesh}) : Shape(Box{{size, 0.1f * size, size}});
+}
+
 }  // namespace fase::checks

@@ -10,5 +10,7 @@ namespace fase::checks {
 [[nodiscard]] Quat random_rotation(Random& random);
 /// Returns a bounded shape of any kind, of about `size` metres half across.
 [[nodiscard]] Shape random_shape(Random& random, float size);
+/// A bumpy square of `size` metres with 32 triangles, one- or two-sided.
+[[nodiscard]] Shape random_mesh(Random& random, float size);
 
 }  // namespace fase::checks

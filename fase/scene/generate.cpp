@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t max_bodies = 1000000;
 
-constexpr std::array<Generator, 9> all_generators{{
+constexpr std::array<Generator, 12> all_generators{{
     {"castle",
      "a castle of stone blocks under fire: walls, towers, a gate arch, a keep; heavy balls arrive in a volley", 3000,
      make_castle},
@@ -19,6 +19,10 @@ constexpr std::array<Generator, 9> all_generators{{
     {"stack", "one stack of boxes", 20, make_stack},
     {"pile", "a mix of all shapes that falls into a walled yard", 2000, make_pile},
     {"sleepers", "small sleeping stacks and a few balls that roll into them", 10000, make_sleepers},
+    {"hills", "a mix of all shapes that rolls over a triangle mesh of hills in a basin", 500, make_hills},
+    {"trees", "trees of 22 hulls each that fall over on a wavy triangle mesh of 60,000 triangles", 50, make_trees},
+    {"junkyard", "a heap of rocks in a walled yard; a roller of 4 m radius on a circle of 35 m drives into it", 10584,
+     make_junkyard},
     {"domino", "dominoes along a spiral; a ball pushes the first", 1000, make_domino},
 }};
 

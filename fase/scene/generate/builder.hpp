@@ -70,6 +70,9 @@ Scene make_washer(const GenerateOptions& options);
 Scene make_stack(const GenerateOptions& options);
 Scene make_pile(const GenerateOptions& options);
 Scene make_sleepers(const GenerateOptions& options);
+Scene make_hills(const GenerateOptions& options);
+Scene make_trees(const GenerateOptions& options);
+Scene make_junkyard(const GenerateOptions& options);
 Scene make_domino(const GenerateOptions& options);
 
 }  // namespace fase::scene
