@@ -23,6 +23,7 @@ constexpr double same_normal = 0.9999;
 /// A triangle near the shape, relative to the shape's position.
 struct NearTriangle {
     TriangleCore triangle;
+    Vec3d nearest;             ///< its point nearest to the middle of the shape
     std::uint32_t number = 0;  ///< results do not depend on the order of the tree
     std::uint32_t place = 0;
 };
@@ -94,7 +95,7 @@ public:
         const Quat rotation = to_float(to_quat(pose.rotation));
         box_ = enlarged(bounds(shape, {{}, rotation}), margin * 1.001f);
         const float size = std::min(inner_radius(shape), 0.1f);
-        around_ = 1.001 * (double(outer_radius(shape)) + margin);
+        around_ = 1.001 * (double(outer_radius(shape)) + length(middle_) + margin);
         touch_ = std::max(0.01f * size, 1e-5f);
         shallow_ = 2 * touch_;
     }
@@ -119,8 +120,10 @@ private:
                 lo = min(lo, corner);
                 hi = max(hi, corner);
             }
-            if (overlaps(rounded_outward(lo, hi), box_))
-                memory_.near.push_back({triangle, mesh_.data->number(place), place});
+            if (!overlaps(rounded_outward(lo, hi), box_)) return;
+            const Vec3d nearest = nearest_point(triangle, middle_);
+            if (length_squared(nearest - middle_) > around_ * around_) return;
+            memory_.near.push_back({triangle, nearest, mesh_.data->number(place), place});
         });
         std::ranges::sort(memory_.near, {}, &NearTriangle::number);
         for (NearTriangle& near : memory_.near) {
@@ -142,6 +145,7 @@ private:
             add(near, face);
             return;
         }
+        if (is_far(near.nearest)) return;
         const Distance nearest = distance_to(triangle);
         if (!(nearest.distance <= margin_)) return;
         if (dot(nearest.normal, triangle.normal) >= same_normal && face.count > 0) {
@@ -162,6 +166,15 @@ private:
                 break;
             case Edge::Ridge: break;  // the other triangle at the edge has the contact
         }
+    }
+
+    /// Whether the plane at a triangle's point nearest to the middle proves that the shape is beyond the margin.
+    [[nodiscard]] bool is_far(Vec3d nearest) const {
+        const Vec3d to = middle_ - nearest;
+        const double size = length(to);
+        if (!(size > 0)) return false;
+        const Vec3d normal = to * (1 / size);
+        return dot(normal, lowest_along(normal) - nearest) - view_.radius > margin_;
     }
 
     /// The distance of the shape from a triangle; beyond the margin only that it is.
@@ -425,7 +438,7 @@ private:
     Vec3d origin_;   ///< position of the shape in the mesh
     Vec3d middle_;
     double margin_, reach_;
-    double around_ = 0;   ///< radius of a sphere around the position that holds the shape and the margin
+    double around_ = 0;   ///< radius of a sphere around the middle that holds the shape and the margin
     double touch_ = 0;    ///< metres within which triangles touch each other
     double shallow_ = 0;  ///< metres of penetration that are never due to a side of the shape
     Aabb box_;            ///< of the shape, relative to its position, with the margin
