@@ -61,9 +61,86 @@ public:
         }
     }
 
+    /// A ray, or a box that moves along one: `lo` and `hi` are its corners relative to the origin of the ray.
+    struct Path {
+        Vec3d origin, direction;  ///< distances are in multiples of the direction's length
+        Vec3 lo{}, hi{};
+    };
+
+    /// Calls visit(triangle) for the triangles whose leaf boxes the path enters, leaves from near to far. It returns
+    /// the distance up to which triangles are still of interest, which never grows; it begins with `limit`.
+    template <class F> void visit_along(const Path& path, float limit, F&& visit) const {
+        const PathInFloat in_float(path);
+        visit_in_order(
+            limit, [&](const MeshNode& node, Entries& entries) { in_float.enter(node, entries); }, visit);
+    }
+
     /// Visits leaves from near to far: `entry(box)` returns the distance at which a box is entered, infinite for never;
     /// `visit(triangle)` returns the distance up to which boxes are still of interest, which never grows.
     template <class Entry, class F> void visit_nearest(float limit, Entry&& entry, F&& visit) const {
+        visit_in_order(
+            limit,
+            [&](const MeshNode& node, Entries& entries) {
+                for (std::size_t k = 0; k < 8; ++k)
+                    entries[k] = node.lo[0][k] <= node.hi[0][k] ? entry(node.box(k)) : Aabb::infinity;
+            },
+            visit);
+    }
+
+    [[nodiscard]] Aabb bounds() const { return bounds_; }
+    [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }
+    [[nodiscard]] std::size_t bytes() const { return nodes_.capacity() * sizeof(MeshNode); }
+
+private:
+    /// Splits stop to choose planes at this depth and halve the lists, so that no tree is deeper than max_depth.
+    static constexpr int max_chosen_depth = 48, max_depth = max_chosen_depth + 32;
+    static constexpr std::size_t max_stack = 7 * max_depth + 8;
+
+    /// The distances at which the children of a node are entered; infinite: never.
+    using Entries = std::array<float, 8>;
+
+    /// A path for tests of eight boxes at a time, in float. Entries are too early by rounding, never too late.
+    class PathInFloat {
+    public:
+        explicit PathInFloat(const Path& path) : path_(path) {
+            for (int axis = 0; axis < 3; ++axis) {
+                constexpr double flat = 1e-30;
+                const double d = path.direction[axis];
+                inverse_[axis] = static_cast<float>(1 / (d < 0 ? (d > -flat ? -flat : d) : (d < flat ? flat : d)));
+            }
+        }
+        void enter(const MeshNode& node, Entries& entries) const {
+            constexpr float slack = 1e-6f;
+            Entries far;
+            entries.fill(0);
+            far.fill(Aabb::infinity);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const int a = static_cast<int>(axis);
+                const float base = static_cast<float>(double(node.origin[axis]) - path_.origin[a]);
+                const float step = node.step[axis], inverse = inverse_[a];
+                const float low = base - path_.hi[a], high = base - path_.lo[a];
+                const float around = slack * ((base < 0 ? -base : base) + 255 * step + (path_.hi[a] - path_.lo[a]));
+                for (std::size_t k = 0; k < 8; ++k) {
+                    const float x = (low - around + step * static_cast<float>(node.lo[axis][k])) * inverse;
+                    const float y = (high + around + step * static_cast<float>(node.hi[axis][k])) * inverse;
+                    const float first = x < y ? x : y, last = x < y ? y : x;
+                    entries[k] = entries[k] < first ? first : entries[k];
+                    far[k] = last < far[k] ? last : far[k];
+                }
+            }
+            for (std::size_t k = 0; k < 8; ++k) {
+                const bool enters =
+                    (node.lo[0][k] <= node.hi[0][k]) & (entries[k] * (1 - slack) <= far[k] * (1 + slack));
+                entries[k] = enters ? entries[k] * (1 - slack) : Aabb::infinity;
+            }
+        }
+
+    private:
+        const Path& path_;
+        Vec3 inverse_;
+    };
+
+    template <class Enter, class F> void visit_in_order(float limit, Enter&& enter, F&& visit) const {
         struct Item {
             float distance;
             std::uint32_t node;
@@ -76,12 +153,13 @@ public:
             const Item item = stack[--size];
             if (!(item.distance <= limit)) continue;
             const MeshNode& node = nodes_[item.node];
+            Entries entries;
+            enter(node, entries);
             std::array<std::pair<float, std::size_t>, 8> order;
             std::size_t found = 0;
             for (std::size_t k = 0; k < 8; ++k) {
-                if (node.lo[0][k] > node.hi[0][k]) continue;
-                const float distance = entry(node.box(k));
-                if (!(distance <= limit)) continue;
+                const float distance = entries[k];
+                if (!(distance <= limit) || distance == Aabb::infinity) continue;
                 std::size_t at = found++;
                 for (; at > 0 && order[at - 1].first < distance; --at) order[at] = order[at - 1];
                 order[at] = {distance, k};  // the farthest first
@@ -96,15 +174,6 @@ public:
                     stack[size++] = {order[i].first, node.first[order[i].second]};
         }
     }
-
-    [[nodiscard]] Aabb bounds() const { return bounds_; }
-    [[nodiscard]] std::span<const MeshNode> nodes() const { return nodes_; }
-    [[nodiscard]] std::size_t bytes() const { return nodes_.capacity() * sizeof(MeshNode); }
-
-private:
-    /// Splits stop to choose planes at this depth and halve the lists, so that no tree is deeper than max_depth.
-    static constexpr int max_chosen_depth = 48, max_depth = max_chosen_depth + 32;
-    static constexpr std::size_t max_stack = 7 * max_depth + 8;
 
     /// Returns a bit for each child whose box touches `box`.
     static unsigned touched(const MeshNode& node, const Aabb& box) {

@@ -13,8 +13,6 @@
 namespace fase::narrow {
 namespace {
 
-constexpr float no_entry = Aabb::infinity;
-
 /// Returns a float that is at most v, and near it.
 float float_below(double v) { return static_cast<float>(v - std::abs(v) * 0x1p-23); }
 float float_above(double v) { return -float_below(-v); }
@@ -133,22 +131,18 @@ bool mesh_overlaps(const Mesh& a, const Shape& b, const TransformD& b_in_a) {
 
 namespace {
 
-/// Returns the distance at which a ray enters a box that is enlarged by the bounds of what moves along it.
-float entry_of(const Aabb& box, const Aabb& mover, Vec3d origin, Vec3d direction, double length) {
-    double near = 0, far = length;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double lo = double(box.lo[axis]) - double(mover.hi[axis]) - origin[axis];
-        const double hi = double(box.hi[axis]) - double(mover.lo[axis]) - origin[axis];
-        const double slack = 1e-12 * (std::abs(lo) + std::abs(hi));
-        if (direction[axis] == 0) {
-            if (lo - slack > 0 || hi + slack < 0) return no_entry;
-            continue;
-        }
-        const double a = (lo - slack) / direction[axis], b = (hi + slack) / direction[axis];
-        near = std::max(near, std::min(a, b));
-        far = std::min(far, std::max(a, b));
-    }
-    return near <= far * (1 + 1e-12) ? float_below(near) : no_entry;
+/// A path in the coordinates of the mesh's data: distances along it are those in the frame of the shape. `mover`: the
+/// bounds of what moves along it, relative to the origin.
+detail::MeshTree::Path path_in_data(const Mesh& mesh, Vec3d origin, Vec3d direction, const Aabb& mover = {{}, {}}) {
+    const Vec3 s = mesh.scale;
+    const Aabb box = detail::unscaled(mesh, mover);
+    // The corners of triangles are rounded to float after scaling.
+    const Vec3 slack =
+        s == Vec3{1, 1, 1} ? Vec3{} : (abs(mesh.data->bounds().lo) + abs(mesh.data->bounds().hi)) * 2e-7f;
+    return {{origin.x / s.x, origin.y / s.y, origin.z / s.z},
+            {direction.x / s.x, direction.y / s.y, direction.z / s.z},
+            box.lo - slack,
+            box.hi + slack};
 }
 
 }  // namespace
@@ -176,12 +170,8 @@ std::optional<Advance> advance_to_mesh(const Mesh& target, const Shape& mover, c
     const double size = double(outer_radius(target)) + double(outer_radius(mover));
     for_each_placed(mover, start, [&](const CoreView& core, const Aabb& box) {
         const Aabb around = rounded_outward(to_double(box.lo) - start.position, to_double(box.hi) - start.position);
-        target.data->tree().visit_nearest(
-            float_above(best ? best->distance : length),
-            [&](const Aabb& node) {
-                return entry_of(scaled_box(target, node), around, start.position, direction,
-                                best ? best->distance : length);
-            },
+        target.data->tree().visit_along(
+            path_in_data(target, start.position, direction, around), float_above(best ? best->distance : length),
             [&](std::uint32_t place) {
                 const TriangleCore triangle(target, place);
                 // Moves a little farther than the best so far, so that equal distances are found.
@@ -236,13 +226,10 @@ private:
 
 std::optional<LocalHit> ray_hit(const Mesh& mesh, const LocalRay& ray) {
     const ShearedRay sheared(ray);
-    const Aabb point{{0, 0, 0}, {0, 0, 0}};
     double nearest = ray.length;
     std::uint32_t best = no_index;
-    mesh.data->tree().visit_nearest(
-        float_above(nearest),
-        [&](const Aabb& node) { return entry_of(scaled_box(mesh, node), point, ray.origin, ray.direction, nearest); },
-        [&](std::uint32_t place) {
+    mesh.data->tree().visit_along(
+        path_in_data(mesh, ray.origin, ray.direction), float_above(nearest), [&](std::uint32_t place) {
             const auto hit = sheared.on(mesh.triangle(place));
             if (hit && (hit->front || mesh.data->two_sided()) && hit->distance >= 0 && hit->distance <= nearest &&
                 (hit->distance < nearest || best == no_index || mesh.data->number(place) < mesh.data->number(best))) {
