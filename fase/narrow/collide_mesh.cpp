@@ -58,7 +58,8 @@ CoreView view_of(const Shape& shape) {
         shape);
 }
 
-/// Returns a point inside the shape, in its frame.
+}  // namespace
+
 Vec3d middle_of(const Shape& shape) {
     const auto* hull = std::get_if<ConvexHull>(&shape);
     if (hull == nullptr) return {};
@@ -66,8 +67,6 @@ Vec3d middle_of(const Shape& shape) {
     for (const Vec3 v : hull->vertices) sum += to_double(v);
     return sum * (1 / double(hull->vertices.size()));
 }
-
-}  // namespace
 
 struct MeshContacts::Memory {
     std::vector<NearTriangle> near;
@@ -138,7 +137,7 @@ private:
         if (!(triangle.height(middle_) >= 0)) return;  // behind it
         const double lowest = triangle.height(lowest_along(triangle.normal)) - view_.radius;
         if (!(lowest <= margin_)) return;
-        const Manifold face = over_face(triangle);
+        Manifold face = over_face(triangle);
         // The shape's lowest point is over the triangle: nothing is nearer, and little depth has no other way out.
         const bool over = face.count > 0 && double(face.points[deepest(face)].separation) <= lowest + 1e-5;
         if (over && lowest >= -shallow_) {
@@ -148,6 +147,8 @@ private:
         if (is_far(near.nearest)) return;
         const Distance nearest = distance_to(triangle);
         if (!(nearest.distance <= margin_)) return;
+        // What is apart from the triangle and below it passes under it, around an edge.
+        if (nearest.distance > 0) remove_below(face, -shallow_);
         if (dot(nearest.normal, triangle.normal) >= same_normal && face.count > 0) {
             add(near, face);
             return;
@@ -230,6 +231,15 @@ private:
         return edge;
     }
 
+    static void remove_below(Manifold& manifold, double separation) {
+        int kept = 0;
+        for (int i = 0; i < manifold.count; ++i) {
+            const ManifoldPoint p = manifold.points[static_cast<std::size_t>(i)];
+            if (double(p.separation) >= separation) manifold.points[static_cast<std::size_t>(kept++)] = p;
+        }
+        manifold.count = kept;
+    }
+
     [[nodiscard]] static std::size_t deepest(const Manifold& manifold) {
         std::size_t best = 0;
         for (int i = 1; i < manifold.count; ++i) {
@@ -277,7 +287,7 @@ private:
 
     /// Adds the plane of a triangle that rises ahead of the shape, at the shape's lowest point.
     void add_ahead(const NearTriangle& near, double lowest) {
-        if (!(reach_ > 0)) return;
+        if (!(reach_ > 0 && lowest > -shallow_)) return;
         const Vec3d normal = near.triangle.normal;
         Manifold manifold;
         manifold.normal = to_float(normal);

@@ -1,6 +1,7 @@
 #pragma once
 /// Contacts of a convex shape with a triangle mesh.
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct MeshManifold {
     Manifold manifold;           ///< the normal points from the mesh to the shape
     std::uint32_t triangle = 0;  ///< the place (see CollisionMesh) of that of its triangles with the smallest number
 };
+
+/// Returns the point of a convex shape, in its frame, whose side of a one-sided triangle decides whether they collide.
+[[nodiscard]] Vec3d middle_of(const Shape& shape);
 
 /// The contacts of one shape with one mesh, and memory that is used again from call to call.
 class MeshContacts {

@@ -24,14 +24,13 @@ struct FoundManifolds {
 /// A mesh and the shape that touches it.
 class MeshPair {
 public:
-    MeshPair(const CollideTables& tables, const Contact& c)
-        : c_(c),
-          mesh_is_b_(std::holds_alternative<Mesh>(shape_of(tables, c.collider_b))),
-          mesh_(std::get<Mesh>(shape_of(tables, mesh_is_b_ ? c.collider_b : c.collider_a))),
-          other_(shape_of(tables, mesh_is_b_ ? c.collider_a : c.collider_b)),
-          mesh_pose_(collider_pose(tables.bodies, tables.colliders[mesh_is_b_ ? c.collider_b : c.collider_a])),
-          other_pose_(collider_pose(tables.bodies, tables.colliders[mesh_is_b_ ? c.collider_a : c.collider_b])) {
-        const Vec3d between = tables.bodies.motion[c.body_b].position - tables.bodies.motion[c.body_a].position;
+    MeshPair(const BodyTable& bodies, const ColliderTable& colliders, const Contact& c)
+        : mesh_is_b_(is_mesh(shape_of(colliders, c.collider_b))),
+          mesh_(std::get<Mesh>(shape_of(colliders, mesh_is_b_ ? c.collider_b : c.collider_a))),
+          other_(shape_of(colliders, mesh_is_b_ ? c.collider_a : c.collider_b)),
+          mesh_pose_(collider_pose(bodies, colliders[mesh_is_b_ ? c.collider_b : c.collider_a])),
+          other_pose_(collider_pose(bodies, colliders[mesh_is_b_ ? c.collider_a : c.collider_b])) {
+        const Vec3d between = bodies.motion[c.body_b].position - bodies.motion[c.body_a].position;
         b_from_a_ = to_float(between);
         const Quatd axes = normalized(to_double(mesh_pose_.rotation));
         const Vec3d from_mesh =
@@ -47,12 +46,13 @@ public:
             out.all[out.count++] = in_world_axes(m);
     }
 
+    [[nodiscard]] Vec3d middle() const { return transform(in_mesh_, narrow::middle_of(other_)); }
     [[nodiscard]] bool a_is_curved() const { return !mesh_is_b_ ? false : is_curved(other_); }
     [[nodiscard]] bool b_is_curved() const { return mesh_is_b_ ? false : is_curved(other_); }
 
 private:
-    static const Shape& shape_of(const CollideTables& tables, std::uint32_t collider) {
-        return tables.colliders.shapes[tables.colliders[collider].shape].shape;
+    static const Shape& shape_of(const ColliderTable& colliders, std::uint32_t collider) {
+        return colliders.shapes[colliders[collider].shape].shape;
     }
 
     [[nodiscard]] KeyedManifold in_world_axes(const narrow::MeshManifold& found) const {
@@ -78,7 +78,6 @@ private:
         return world;
     }
 
-    const Contact& c_;
     bool mesh_is_b_;
     const Mesh& mesh_;
     const Shape& other_;
@@ -90,7 +89,7 @@ private:
 void store(const CollideTables& tables, Contact& c, const FoundManifolds& found) {
     const BodyMotion& a = tables.bodies.motion[c.body_a];
     const BodyMotion& b = tables.bodies.motion[c.body_b];
-    const MeshPair pair(tables, c);
+    const MeshPair pair(tables.bodies, tables.colliders, c);
     const PairMotion motion = c.manifolds > 0 ? pair_motion(c, a, b) : PairMotion();
     const float radius = std::max(tables.colliders.shapes[tables.colliders[c.collider_a].shape].inner_radius,
                                   tables.colliders.shapes[tables.colliders[c.collider_b].shape].inner_radius);
@@ -106,6 +105,10 @@ void store(const CollideTables& tables, Contact& c, const FoundManifolds& found)
 
 }  // namespace
 
+Vec3d middle_in_mesh(const BodyTable& bodies, const ColliderTable& colliders, const Contact& contact) {
+    return MeshPair(bodies, colliders, contact).middle();
+}
+
 void collide_with_meshes(const CollideTables& tables, std::span<const std::uint32_t> list, TaskRunner& tasks) {
     if (list.empty()) return;
     ContactTable& contacts = tables.contacts;
@@ -115,7 +118,7 @@ void collide_with_meshes(const CollideTables& tables, std::span<const std::uint3
         for (std::size_t i = begin; i < end; ++i) {
             const Contact& c = contacts[list[i]];
             const float reach = tables.sweep[c.body_a] + tables.sweep[c.body_b];
-            MeshPair(tables, c).find(search, tables.margin(c), reach, found[i]);
+            MeshPair(tables.bodies, tables.colliders, c).find(search, tables.margin(c), reach, found[i]);
         }
     });
     for (std::size_t i = 0; i < list.size(); ++i) {

@@ -89,7 +89,10 @@ void step(WorldState& state, float seconds) {
             quarantine_invalid_forces(context, motion_states, constraints);
             solve(context, bodies, moved, contacts, constraints, state.islands, state.solver);
         });
-        timed(report, Stage::Finish, [&] { finish(context, state.solver, constraints, motion_states); });
+        timed(report, Stage::Finish, [&] {
+            finish(context, state.solver, constraints, motion_states);
+            hold_at_meshes(context, colliders, contacts, constraints, bodies);
+        });
         list_moved(bodies, state.moved_bodies);
     }
     timed(report, Stage::Events, [&] {

@@ -141,6 +141,48 @@ TEST(MeshWorld, nothing_falls_through_a_bowl_and_all_comes_to_rest) {
     }
 }
 
+TEST(MeshWorld, no_body_passes_at_any_speed_or_spin) {
+    const Shape shapes[] = {Sphere{0.1f}, Box{{0.1f, 0.1f, 0.1f}}, Capsule{0.05f, 0.5f}, Cylinder{0.2f, 0.05f},
+                            Box{{0.6f, 0.02f, 0.05f}}};
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> indices;
+    constexpr std::uint32_t n = 40;
+    const auto height = [](double x, double z) { return std::sin(0.8 * x) * std::cos(0.7 * z); };
+    for (std::uint32_t i = 0; i <= n; ++i)
+        for (std::uint32_t k = 0; k <= n; ++k) {
+            const float x = 0.7f * (static_cast<float>(i) - n / 2), z = 0.7f * (static_cast<float>(k) - n / 2);
+            positions.push_back({x, static_cast<float>(height(double(x), double(z))), z});
+            if (i == n || k == n) continue;
+            const std::uint32_t a = i * (n + 1) + k, b = a + 1, c = a + n + 1;
+            indices.insert(indices.end(), {a, b, c, c, b, c + 1});
+        }
+    const Mesh hills{*CollisionMesh::build(positions, indices)};
+    Random random(13);
+    for (const float speed : {5.0f, 20.0f, 60.0f, 200.0f, 480.0f})
+        for (const Shape& shape : shapes)
+            for (int run = 0; run < 12; ++run) {
+                World world = make_world();
+                add(world, {.kind = BodyKind::Static}, hills);
+                const Vec3 direction =
+                    normalized(Vec3{random.between(-1, 1), random.between(-1, -0.1f), random.between(-1, 1)});
+                Vec3d start = Vec3d{random.between(-4, 4), 0, random.between(-4, 4)} - to_double(direction) * 2.5;
+                start.y = std::max(start.y, 1.3);
+                const Vec3 spin = run % 2 == 0 ? Vec3{} : 30 * Vec3{random.between(-1, 1), 1, random.between(-1, 1)};
+                const BodyId body = add(world,
+                                        {.position = start,
+                                         .rotation = random_rotation(random),
+                                         .linear_velocity = direction * speed,
+                                         .angular_velocity = spin},
+                                        shape);
+                for (int i = 0; i < 40; ++i) {
+                    opened(world.step());
+                    const Vec3d at = state(world, body).centre;
+                    if (std::abs(at.x) > 13 || std::abs(at.z) > 13) break;
+                    ASSERT_GT(at.y, height(at.x, at.z) - 0.15) << name_of(shape) << " at " << speed << " run " << run;
+                }
+            }
+}
+
 TEST(MeshWorld, threads_and_structures_give_the_same_bits) {
     std::uint64_t expected = 0;
     for (const int threads : {1, 2, 4}) {

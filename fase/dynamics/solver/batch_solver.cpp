@@ -24,6 +24,12 @@ constexpr float max_frequency_share = 0.1f;
 // share of frequency and damping ratio, the root of 1/2, keeps stiffness and damping of the contact as they were: what
 // lies beside a body that falls asleep or wakes does not jump.
 constexpr float sleeper_share = 0.70710678f;
+// Radians per sub-step above which the inertia tensor of a body with unequal moments is computed in each sub-step.
+// With that of the beginning of the step, contacts give thin bodies that spin fast energy without bound.
+constexpr float fast_turn = 0.1f;
+// The same between the two passes of a sub-step. The relax pass then keeps the velocity of push-out, so only where the
+// contact of before is meaningless.
+constexpr float whirling_turn = 0.6f;
 
 }  // namespace
 
@@ -215,15 +221,45 @@ void BatchSolver::run(const BatchInput& in, TaskRunner& tasks) {
         });
     };
     for (int step = 0; step < settings.sub_steps; ++step) {
-        each_body(
-            [&](auto rows, auto motions) { integrate_velocities(rows, motions, step > 0, settings.speed_limits); });
+        const bool fresh = step == 0 || turn_fast_bodies(in, false, tasks);
+        each_body([&](auto rows, auto motions) { integrate_velocities(rows, motions, !fresh, settings.speed_limits); });
         solve_impacts(in, tasks);
-        if (step == 0) run_passes(Pass::WarmStart, in, tasks);
+        if (fresh) run_passes(Pass::WarmStart, in, tasks);
         run_passes(Pass::Biased, in, tasks);
         each_body([&](auto rows, auto motions) { integrate_poses(rows, motions, h); });
         impacts_.correct_paths(in.rows, in.motions);
+        turn_fast_bodies(in, true, tasks);
         run_passes(Pass::Relax, in, tasks);
     }
+}
+
+bool BatchSolver::turn_fast_bodies(const BatchInput& in, bool within_sub_step, TaskRunner& tasks) {
+    const float h = in.lanes.settings.sub_step();
+    const float min_turn = within_sub_step ? whirling_turn : fast_turn;
+    const auto is_fast = [&](std::uint32_t row) {
+        return in.motions[row].gyroscopic && length_squared(read(in.rows[row].spin)) * h * h > min_turn * min_turn;
+    };
+    bool any = false;
+    for (std::uint32_t row = in.batch.first_row; row < in.batch.first_row + in.batch.bodies; ++row) {
+        if (!is_fast(row)) continue;
+        any = true;
+        turn_inertia(in.masses[row], in.motions[row]);
+    }
+    if (!any) return false;
+    // Their impulses acted on bodies that stood otherwise. The relax pass counts those of a sub-step.
+    for (Colour& colour : colours_)
+        for (ContactBlock& block : colour.blocks)
+            for (int lane = 0; lane < block_lanes; ++lane) {
+                if (!is_fast(block.a[lane]) && !is_fast(block.b[lane])) continue;
+                for (std::size_t i = 0; i < 4; ++i) {
+                    if (within_sub_step) block.total[i][lane] += block.impulse[i][lane];
+                    block.impulse[i][lane] = 0;
+                }
+                for (auto& impulse : block.friction_impulse) impulse[lane] = 0;
+                block.twist_impulse[lane] = 0;
+            }
+    run_passes(Pass::PrepareAgain, in, tasks);
+    return true;
 }
 
 void BatchSolver::solve_impacts(const BatchInput& in, TaskRunner& tasks) {

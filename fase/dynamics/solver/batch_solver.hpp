@@ -30,7 +30,7 @@ struct BatchInput {
     const ConstraintColours& colours;  ///< of this step
     std::span<const std::uint32_t> row_of_body;
     std::span<SolverBody> rows;
-    std::span<const SolverMass> masses;
+    std::span<SolverMass> masses;
     std::span<SolverMotion> motions;
     const LaneInput& lanes;
     bool reference = false;  ///< solves one lane at a time
@@ -87,6 +87,9 @@ private:
     void load(const BatchInput& in, TaskRunner& tasks);
     void run(const BatchInput& in, TaskRunner& tasks);
     void run_passes(Pass pass, const BatchInput& in, TaskRunner& tasks);
+    /// Brings the inertia tensors of bodies that rotate fast up to date, and what was computed from them.
+    /// `within_sub_step`: the bodies have moved, and the relax pass follows. Returns whether there are any.
+    bool turn_fast_bodies(const BatchInput& in, bool within_sub_step, TaskRunner& tasks);
     void solve_impacts(const BatchInput& in, TaskRunner& tasks);
     void store(const BatchInput& in, TaskRunner& tasks);
 

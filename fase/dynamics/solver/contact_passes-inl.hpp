@@ -198,8 +198,8 @@ FASE_INLINE Coupling<V> normal_coupling(const Frame<V>& f, const Inertia<V>& ine
             dot(f.t1, sum_t1)};
 }
 
-/// Stores effective mass, approach speed and lever arm of each point.
-template <class V>
+/// Stores effective mass and lever arm of each point, and with `first` its approach speed.
+template <class V, bool first>
 FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, const Affine<V>& velocity) {
     const V zero = V::set(0.0f), one = V::set(1.0f);
     for (int i = 0; i < 4; ++i) {
@@ -208,7 +208,7 @@ FASE_INLINE void prepare_points(ContactBlock& k, int s, const Coupling<V>& m, co
         const V mass_here = m.m00 + two_x * m.m01 + two_y * m.m02 + x * x * m.m11 + y * y * m.m22 + two_x * y * m.m12;
         const V inverse = select_greater(mass_here, zero, one / mass_here, zero);
         select_greater(present, zero, inverse, zero).store(k.point_mass[i] + s);
-        (zero - velocity.at(x, y)).store(k.approach[i] + s);
+        if constexpr (first) (zero - velocity.at(x, y)).store(k.approach[i] + s);
         sqrt_of(x * x + y * y).store(k.lever[i] + s);
     }
 }
@@ -235,8 +235,9 @@ FASE_INLINE void prepare_friction(ContactBlock& k, int s, const Frame<V>& f, con
     dot(f.n, ia2 + ib2).store(k.twist_coupling[1] + s);
 }
 
-/// Computes all values of the block that depend on the manifold and on the bodies at the beginning of the step.
-template <class V, Sides sides> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
+/// Computes all values of the block that depend on the manifold and on the masses of the bodies; with `first` also
+/// those that depend on their velocities at the beginning of the step.
+template <class V, Sides sides, bool first> void prepare_lanes(ContactBlock& k, int s, const PassInput& in) {
     Velocities<V> u;
     u.gather(in.bodies, k.a + s, k.b + s);
     Inertia<V> inertia;
@@ -247,7 +248,7 @@ template <class V, Sides sides> void prepare_lanes(ContactBlock& k, int s, const
     const Vec<V> mass = inertia.mass_a + inertia.mass_b;
     const Coupling<V> coupling = normal_coupling(f, inertia, sum, mass);
     coupling.store(k, s);
-    prepare_points(k, s, coupling, normal_velocity(f, u));
+    prepare_points<V, first>(k, s, coupling, normal_velocity(f, u));
     prepare_friction(k, s, f, inertia, sum, mass);
 }
 
@@ -502,7 +503,8 @@ void run_sides(Pass pass, ContactBlock* blocks, std::size_t count, const PassInp
         if (i == count) break;
         ContactBlock& k = blocks[i];
         for (int s = 0; s < block_lanes; s += V::lanes) switch (pass) {
-                case Pass::Prepare: prepare_lanes<V, sides>(k, s, in); break;
+                case Pass::Prepare: prepare_lanes<V, sides, true>(k, s, in); break;
+                case Pass::PrepareAgain: prepare_lanes<V, sides, false>(k, s, in); break;
                 case Pass::FindImpacts: find_impact_lanes<V>(k, s, in); break;
                 case Pass::WarmStart: warm_start_lanes<V, sides>(k, s, in, hub); break;
                 case Pass::Biased: solve_lanes<V, sides, true>(k, s, in, hub); break;

@@ -8,11 +8,12 @@ namespace fase::dynamics {
 
 /// The passes in the order of a step; FindImpacts, Biased and Relax repeat in each sub-step.
 enum class Pass {
-    Prepare,      ///< computes effective masses from the bodies at the beginning of the step
-    FindImpacts,  ///< marks the contacts that hit with restitution in this sub-step
-    WarmStart,    ///< applies the impulses of the last step
-    Biased,       ///< soft contacts, with push-out of overlap and friction
-    Relax,        ///< hard contacts without push-out, with friction
+    Prepare,       ///< computes effective masses from the bodies at the beginning of the step
+    PrepareAgain,  ///< the same from new inertia tensors
+    FindImpacts,   ///< marks the contacts that hit with restitution in this sub-step
+    WarmStart,     ///< applies the impulses of the last step or sub-step
+    Biased,        ///< soft contacts, with push-out of overlap and friction
+    Relax,         ///< hard contacts without push-out, with friction
 };
 
 /// Runs a pass over `count` blocks of a colour in order. Lanes of a Sides::Hub block that share a body solve their

@@ -1,12 +1,16 @@
 /// Integrates velocities and poses: four bodies at a time where nothing special happens to any of them, else one.
 #include "fase/dynamics/solver/integrate.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "fase/dynamics/solver/rows.hpp"
 #include "fase/math/detail/float4.hpp"
 
 namespace fase::dynamics {
 namespace {
 
+constexpr float max_part = 0.25f;        // radians of a torque-free rotation that are integrated at once
 constexpr float min_gyroscopic = 1e-8f;  // square of the radians per sub-step, above which unequal moments matter
 
 Vec3 without_locked(Vec3 v, unsigned locks) { return {locks & 1 ? 0 : v.x, locks & 2 ? 0 : v.y, locks & 4 ? 0 : v.z}; }
@@ -66,7 +70,10 @@ void integrate_pose(SolverBody& body, SolverMotion& motion, float h) {
         const Vec3d moments = to_double(motion.moments);
         Quatd rotation = normalized(to_double(turned) * start);
         Vec3d momentum = multiply(rotate_back(rotation, to_double(spin)), moments);
-        rotate_torque_free(rotation, momentum, moments, static_cast<double>(h));
+        // The splitting conserves the energy only while the angles of its parts are small.
+        const int parts =
+            fast < max_part * max_part ? 1 : 1 + static_cast<int>(std::min(std::sqrt(fast) / max_part, 63.0f));
+        for (int i = 0; i < parts; ++i) rotate_torque_free(rotation, momentum, moments, static_cast<double>(h) / parts);
         const Vec3d principal{momentum.x / moments.x, momentum.y / moments.y, momentum.z / moments.z};
         const Vec3 after = to_float(rotate(rotation, principal));
         motion.free_spin += after - spin;
@@ -164,6 +171,18 @@ bool integrate_four_poses(SolverBody* bodies, SolverMotion* motions, float h) {
 }
 
 }  // namespace
+
+void turn_inertia(SolverMass& mass, const SolverMotion& motion) {
+    const Mat3 r = to_matrix(normalized(motion.turned * motion.rotation));
+    const Vec3 i{1 / motion.moments.x, 1 / motion.moments.y, 1 / motion.moments.z};
+    const Vec3 x = r.x * i.x, y = r.y * i.y, z = r.z * i.z;
+    mass.inertia[0] = r.x.x * x.x + r.y.x * y.x + r.z.x * z.x;
+    mass.inertia[1] = r.x.x * x.y + r.y.x * y.y + r.z.x * z.y;
+    mass.inertia[2] = r.x.x * x.z + r.y.x * y.z + r.z.x * z.z;
+    mass.inertia[3] = r.x.y * x.y + r.y.y * y.y + r.z.y * z.y;
+    mass.inertia[4] = r.x.y * x.z + r.y.y * y.z + r.z.y * z.z;
+    mass.inertia[5] = r.x.z * x.z + r.y.z * y.z + r.z.z * z.z;
+}
 
 double approximate_tangent(double x) {
     const double a = x < 0 ? -x : x;

@@ -51,6 +51,9 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
 /// |x| < 0.1.
 [[nodiscard]] double approximate_tangent(double x);
 
+/// Sets the world inverse inertia of a gyroscopic body as it stands now, within the step.
+void turn_inertia(SolverMass& mass, const SolverMotion& motion);
+
 /// Rotates a torque-free body for `h` seconds. `rotation` maps the principal axes to the world; `momentum` is the
 /// angular momentum in the principal frame. Conserves |momentum| to rounding, and the energy to O(h²) without drift.
 /// Uses double, so that rounding does not accumulate over thousands of steps.

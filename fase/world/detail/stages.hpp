@@ -63,6 +63,10 @@ void solve(const StepContext& context, const BodyTable& bodies, const Moved& mov
 void finish(const StepContext& context, const dynamics::Solver& solver, const Constraints& constraints,
             const MotionStates& state);
 
+/// Keeps the middles of shapes from crossing meshes: what contacts missed, because a body rotated fast or was pushed.
+void hold_at_meshes(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
+                    const Constraints& constraints, BodyTable& bodies);
+
 // events
 /// Collides sensors where the bodies are after they moved, so that events tell the end of the step.
 void collide_sensors(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders,

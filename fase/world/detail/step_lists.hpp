@@ -19,6 +19,12 @@ struct Moved {
     std::vector<std::uint32_t> clamped;    ///< bodies whose speed was clamped before the step, ascending
 };
 
+/// A shape on a mesh, before the bodies move.
+struct MeshPath {
+    std::uint32_t contact = 0;
+    Vec3d start;  ///< narrow::middle_of() the shape, in the frame of the mesh
+};
+
 /// From "collide": the constraints of this step. "islands" and "solve" list them again when active contacts were added
 /// or bodies were quarantined; the solver fills the results.
 struct Constraints {
@@ -27,6 +33,7 @@ struct Constraints {
     std::vector<std::uint32_t> sensors;  ///< active contacts of sensors, which are collided after the bodies moved
     std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
     std::vector<std::uint8_t> reused;    ///< by active pair: the manifolds of the last step were reused
+    std::vector<MeshPath> mesh_paths;    ///< of the active contacts with meshes, without sensors
     std::vector<std::uint8_t> roles;     ///< by body, inside gather_constraints(): what contacts do to it
 };
 
