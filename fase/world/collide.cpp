@@ -167,17 +167,13 @@ void check_resting(const CollideTables& tables, std::vector<std::uint32_t>& chec
     update_contacts(tables, checked, tasks);
 }
 
-/// Collides the active contacts that update_active() left out, and notes where they begin.
-void update_meshes(const CollideTables& tables, Constraints& constraints, TaskRunner& tasks) {
+/// Collides the active contacts that update_active() left out.
+void update_meshes(const CollideTables& tables, std::vector<std::uint8_t>& reused, TaskRunner& tasks) {
     std::vector<std::uint32_t> list;
-    constraints.mesh_paths.clear();
-    for (std::size_t i = 0; i < constraints.reused.size(); ++i) {
-        if (constraints.reused[i] != on_mesh) continue;
-        constraints.reused[i] = not_reused;
-        const std::uint32_t contact = tables.contacts.active.values[i];
-        list.push_back(contact);
-        constraints.mesh_paths.push_back(
-            {contact, middle_in_mesh(tables.bodies, tables.colliders, tables.contacts[contact])});
+    for (std::size_t i = 0; i < reused.size(); ++i) {
+        if (reused[i] != on_mesh) continue;
+        reused[i] = not_reused;
+        list.push_back(tables.contacts.active.values[i]);
     }
     collide_with_meshes(tables, list, tasks);
 }
@@ -194,7 +190,8 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
         for (std::size_t i = begin; i < end; i += group)
             update_active(tables, i, std::min(i + group, end), constraints.reused);
     });
-    update_meshes(tables, constraints, context.tasks);
+    update_meshes(tables, constraints.reused, context.tasks);
+    note_middles(bodies, colliders, moved, contacts, constraints);
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
     StepReport& report = context.report;
     report.manifolds += static_cast<std::uint32_t>(constraints.all.size());

@@ -46,7 +46,6 @@ public:
             out.all[out.count++] = in_world_axes(m);
     }
 
-    [[nodiscard]] Vec3d middle() const { return transform(in_mesh_, narrow::middle_of(other_)); }
     [[nodiscard]] bool a_is_curved() const { return !mesh_is_b_ ? false : is_curved(other_); }
     [[nodiscard]] bool b_is_curved() const { return mesh_is_b_ ? false : is_curved(other_); }
 
@@ -104,10 +103,6 @@ void store(const CollideTables& tables, Contact& c, const FoundManifolds& found)
 }
 
 }  // namespace
-
-Vec3d middle_in_mesh(const BodyTable& bodies, const ColliderTable& colliders, const Contact& contact) {
-    return MeshPair(bodies, colliders, contact).middle();
-}
 
 void collide_with_meshes(const CollideTables& tables, std::span<const std::uint32_t> list, TaskRunner& tasks) {
     if (list.empty()) return;

@@ -419,8 +419,12 @@ void complete(WorldState& next) {
     next.broad_phase.edited_colliders.reserve(next.colliders.all.size());
     next.colliders.free_shapes.reserve(next.colliders.shapes.size());
     measure_asleep_overhang(next.bodies, next.colliders, next.broad_phase, next.query, next.bodies.asleep.bodies);
-    for (std::uint32_t i = 0; i < next.colliders.shapes.size(); ++i)
-        if (next.colliders.shapes[i].users != 0) next.colliders.shape_of_key.emplace(next.colliders.shapes[i].key, i);
+    for (std::uint32_t i = 0; i < next.colliders.shapes.size(); ++i) {
+        const SharedShape& shared = next.colliders.shapes[i];
+        if (shared.users == 0) continue;
+        next.colliders.shape_of_key.emplace(shared.key, i);
+        next.colliders.meshes += is_mesh(shared.shape) ? 1 : 0;
+    }
 }
 
 /// Has the restored state issue no id that this world issued before under the same number, and remembers those that it

@@ -91,7 +91,7 @@ void step(WorldState& state, float seconds) {
         });
         timed(report, Stage::Finish, [&] {
             finish(context, state.solver, constraints, motion_states);
-            hold_at_meshes(context, colliders, contacts, constraints, bodies);
+            hold_middles(context, colliders, contacts, constraints, bodies);
         });
         list_moved(bodies, state.moved_bodies);
     }

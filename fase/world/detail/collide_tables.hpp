@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "fase/core/tasks.hpp"
-#include "fase/world/detail/step_lists.hpp"
 #include "fase/world/detail/tables.hpp"
 #include "fase/world/settings.hpp"
 
@@ -25,9 +24,6 @@ struct CollideTables {
     }
 };
 
-/// Returns where the middle of the shape in a contact with a mesh is, in the frame of the mesh.
-[[nodiscard]] Vec3d middle_in_mesh(const BodyTable& bodies, const ColliderTable& colliders,
-                                   const dynamics::Contact& contact);
 /// Computes the manifolds of contacts with meshes. Their number may change, so that they may move in the pool.
 void collide_with_meshes(const CollideTables& tables, std::span<const std::uint32_t> contacts, TaskRunner& tasks);
 

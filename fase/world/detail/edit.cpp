@@ -198,6 +198,7 @@ std::uint32_t share_shape(WorldState& state, const Shape& shape) {
         state.colliders.free_shapes.pop_back();
         state.colliders.shapes[index] = std::move(shared);
     }
+    state.colliders.meshes += is_mesh(shape) ? 1 : 0;
     return index;
 }
 
@@ -229,6 +230,7 @@ void release_shape(WorldState& state, std::uint32_t index) {
             state.colliders.shape_of_key.erase(at);
             break;
         }
+    state.colliders.meshes -= is_mesh(shared.shape) ? 1 : 0;
     shared = {};
     state.colliders.free_shapes.push_back(index);
 }

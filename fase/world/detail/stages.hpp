@@ -63,9 +63,12 @@ void solve(const StepContext& context, const BodyTable& bodies, const Moved& mov
 void finish(const StepContext& context, const dynamics::Solver& solver, const Constraints& constraints,
             const MotionStates& state);
 
-/// Keeps the middles of shapes from crossing meshes: what contacts missed, because a body rotated fast or was pushed.
-void hold_at_meshes(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
-                    const Constraints& constraints, BodyTable& bodies);
+/// Keeps the middles of shapes from crossing shapes of static and kinematic bodies: what contacts missed, because a
+/// body rotated fast or was pushed. note_middles() is a part of collide().
+void hold_middles(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
+                  const Constraints& constraints, BodyTable& bodies);
+void note_middles(const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
+                  const ContactTable& contacts, Constraints& constraints);
 
 // events
 /// Collides sensors where the bodies are after they moved, so that events tell the end of the step.

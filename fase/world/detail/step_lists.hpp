@@ -19,10 +19,10 @@ struct Moved {
     std::vector<std::uint32_t> clamped;    ///< bodies whose speed was clamped before the step, ascending
 };
 
-/// A shape on a mesh, before the bodies move.
-struct MeshPath {
-    std::uint32_t contact = 0;
-    Vec3d start;  ///< narrow::middle_of() the shape, in the frame of the mesh
+/// Where the middle of a shape is before the bodies move.
+struct MiddlePath {
+    std::uint32_t contact = 0;  ///< with a shape of a static or kinematic body
+    Vec3d start;                ///< narrow::middle_of() the dynamic body's shape, in the frame of the other
 };
 
 /// From "collide": the constraints of this step. "islands" and "solve" list them again when active contacts were added
@@ -30,11 +30,11 @@ struct MeshPath {
 struct Constraints {
     std::vector<dynamics::Constraint> all;         ///< manifolds with points, in the order of ContactTable::active
     std::vector<dynamics::ContactResult> results;  ///< one for each constraint
-    std::vector<std::uint32_t> sensors;  ///< active contacts of sensors, which are collided after the bodies moved
-    std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
-    std::vector<std::uint8_t> reused;    ///< by active pair: the manifolds of the last step were reused
-    std::vector<MeshPath> mesh_paths;    ///< of the active contacts with meshes, without sensors
-    std::vector<std::uint8_t> roles;     ///< by body, inside gather_constraints(): what contacts do to it
+    std::vector<std::uint32_t> sensors;    ///< active contacts of sensors, which are collided after the bodies moved
+    std::vector<std::uint32_t> checked;    ///< resting contacts that this step collided
+    std::vector<std::uint8_t> reused;      ///< by active pair: the manifolds of the last step were reused
+    std::vector<MiddlePath> middle_paths;  ///< of fast bodies, and of contacts with meshes; in the order of pairs
+    std::vector<std::uint8_t> roles;       ///< by body, inside gather_constraints(): what contacts do to it
 };
 
 /// A body that is struck, and the momentum of what strikes it in kg m/s.

@@ -78,6 +78,7 @@ struct ColliderTable {
 
     // Remade.
     std::unordered_multimap<std::uint64_t, std::uint32_t> shape_of_key;  ///< by SharedShape::key
+    std::uint32_t meshes = 0;                                            ///< shapes that are meshes
 
     [[nodiscard]] Collider& operator[](std::uint32_t collider) { return all[collider]; }
     [[nodiscard]] const Collider& operator[](std::uint32_t collider) const { return all[collider]; }
