@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fase/math/vec3.hpp"
+#include "fase/math/quat.hpp"
 
 namespace fase::detail {
 
@@ -39,6 +39,13 @@ struct Float4 {
 
 inline Vec3Of<Float4> select(Float4::Mask mask, const Vec3Of<Float4>& yes, const Vec3Of<Float4>& no) {
     return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
+/// Returns q scaled to length 1; the identity where q's length is 0.
+inline QuatOf<Float4> normalized(const QuatOf<Float4>& q) {
+    const Float4 length = sqrt(length_squared(q)), s = Float4(1.0f) / length;
+    const Float4::Mask valid = Float4(0.0f) < length;
+    return {select(valid, q.x * s, 0.0f), select(valid, q.y * s, 0.0f), select(valid, q.z * s, 0.0f),
+            select(valid, q.w * s, 1.0f)};
 }
 /// Whether any lane of a mask is true.
 inline bool any(Float4::Mask mask) {
