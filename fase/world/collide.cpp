@@ -1,6 +1,7 @@
 /// Stage "collide": updates the contact manifold of each active pair.
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "fase/core/detail/prefetch.hpp"
 #include "fase/narrow/dispatch.hpp"
@@ -153,8 +154,10 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
         count = 0;
     }
     for (std::size_t k = 0; k < count; ++k) reused[at[k]] = reuse_manifolds(inputs[k]) ? 1 : 0;
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+        if (i + 2 < end) detail::prefetch(contacts.manifolds[contact(i + 2).first_manifold]);
         if (Contact& c = contact(i); reused[i] == not_reused && !c.sensor) compute_manifolds(tables, c);
+    }
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
@@ -195,12 +198,9 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
     StepReport& report = context.report;
     report.manifolds += static_cast<std::uint32_t>(constraints.all.size());
-    for (std::size_t i = 0; i < contacts.active.size(); ++i) {
-        const Contact& c = contacts[contacts.active.values[i]];
-        if (c.sensor) continue;
-        report.manifolds_reused += constraints.reused[i];
-        report.contact_points += c.points;
-    }
+    report.contact_points += constraints.points;
+    report.manifolds_reused += static_cast<std::uint32_t>(
+        std::accumulate(constraints.reused.begin(), constraints.reused.end(), std::size_t{0}));
 }
 
 void collide_sensors(const StepContext& context, const BodyTable& bodies, const ColliderTable& colliders,

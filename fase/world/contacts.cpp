@@ -1,6 +1,7 @@
 /// Contacts begin and end; their lists: active pairs sorted, resting pairs in any order.
 #include <algorithm>
 
+#include "fase/core/detail/prefetch.hpp"
 #include "fase/world/detail/contacts.hpp"
 
 namespace fase {
@@ -153,6 +154,7 @@ void rebuild_contact_graph(ContactTable& contacts) {
 void gather_constraints(const BodyTable& bodies, float slop, ContactTable& contacts, Constraints& constraints,
                         std::span<const std::uint32_t> quarantined) {
     constexpr std::uint8_t moves = 1, left_out = 2;
+    constexpr std::size_t prefetch_ahead = 6;
     std::vector<std::uint8_t>& role = constraints.roles;
     role.assign(bodies.traits.size(), 0);
     for (const std::uint32_t body : bodies.awake)
@@ -162,7 +164,12 @@ void gather_constraints(const BodyTable& bodies, float slop, ContactTable& conta
     constraints.all.clear();
     constraints.results.clear();
     constraints.sensors.clear();
-    for (const std::uint32_t index : contacts.active.values) {
+    constraints.beside_sleepers = false;
+    constraints.points = 0;
+    const std::vector<std::uint32_t>& active = contacts.active.values;
+    for (std::size_t at = 0; at < active.size(); ++at) {
+        if (at + prefetch_ahead < active.size()) detail::prefetch(contacts[active[at + prefetch_ahead]]);
+        const std::uint32_t index = active[at];
         Contact& c = contacts[index];
         if (c.sensor) {
             constraints.sensors.push_back(index);
@@ -171,17 +178,28 @@ void gather_constraints(const BodyTable& bodies, float slop, ContactTable& conta
         for (std::size_t i = c.manifolds; i < c.coloured; ++i)
             contacts.colours.release(contacts.manifolds.coloured(c)[i].colour, c.body_a, c.body_b);
         c.coloured = c.manifolds;
-        dynamics::Constraint constraint{c.first_manifold, index, c.body_a, c.body_b};
+        if (c.manifolds == 0) continue;
+        constraints.points += c.points;
+        // Written in place: a copy would wait for the single bytes.
+        dynamics::Constraint& constraint = constraints.all.emplace_back();
+        constraint.index = c.first_manifold;
+        constraint.owner = index;
+        constraint.body_a = c.body_a;
+        constraint.body_b = c.body_b;
         if (role[c.body_a] != left_out && role[c.body_b] != left_out)
             constraint.moves = dynamics::moves_of(role[c.body_a] == moves, role[c.body_b] == moves);
         if (constraint.moves == dynamics::Moves::A || constraint.moves == dynamics::Moves::B) {
             const std::uint32_t other = constraint.moves == dynamics::Moves::A ? c.body_b : c.body_a;
             constraint.on_sleeper = bodies.traits[other].kind == BodyKind::Dynamic;
         }
+        constraints.beside_sleepers |= constraint.on_sleeper || constraint.moves == dynamics::Moves::Neither;
         constraint.began = !c.touching;
         constraint.touches = c.touching || c.nearest <= slop;
-        for (std::size_t i = 0; i < c.manifolds; ++i, ++constraint.index) {
-            constraints.all.push_back(constraint);
+        constraints.results.emplace_back().nearest = c.nearest;
+        for (std::uint32_t i = 1; i < c.manifolds; ++i) {
+            dynamics::Constraint next = constraints.all.back();
+            ++next.index;
+            constraints.all.push_back(next);
             constraints.results.push_back({c.nearest});
         }
     }

@@ -45,22 +45,28 @@ void wake_at(const StepContext& context, const ContactTable& contacts, const Con
     }
 }
 
-/// Removes the blows on awake bodies that no touching bodies connect to a sleeper: they wake nothing.
-void drop_blows_far_from_sleepers(const BodyTable& bodies, const Constraints& constraints, IslandLists& lists) {
-    if (lists.blows.empty()) return;
-    const auto is_asleep = [&](std::uint32_t body) { return bodies.traits[body].motion_state == MotionState::Asleep; };
+/// Marks the sets of bodies that touching bodies connect to a sleeper.
+void find_sets_near_sleepers(const BodyTable& bodies, const Constraints& constraints, IslandLists& lists) {
     lists.sets.reset(bodies.traits.size());
     lists.near_sleeper.assign(bodies.traits.size(), 0);
+    const auto touches_sleeper = [](const Constraint& c) { return c.touches && c.on_sleeper; };
+    if (std::ranges::none_of(constraints.all, touches_sleeper)) return;
     for (const Constraint& c : constraints.all)
-        if (c.touches && bodies.traits[c.body_a].kind == BodyKind::Dynamic &&
-            bodies.traits[c.body_b].kind == BodyKind::Dynamic)
-            lists.sets.unite(c.body_a, c.body_b);
+        if (c.touches && (c.on_sleeper || c.moves == Moves::Both)) lists.sets.unite(c.body_a, c.body_b);
     for (const Constraint& c : constraints.all)
-        for (const std::uint32_t body : {c.body_a, c.body_b})
-            if (c.touches && is_asleep(body)) lists.near_sleeper[lists.sets.find(body)] = 1;
-    std::erase_if(lists.blows, [&](const Blow& blow) {
-        return !is_asleep(blow.body) && !lists.near_sleeper[lists.sets.find(blow.body)];
-    });
+        if (touches_sleeper(c)) lists.near_sleeper[lists.sets.find(c.body_a)] = 1;
+}
+
+/// Lists the blows that may wake a sleeper: on a sleeper, or on a body that touching bodies connect to one.
+void find_blows(const StepContext& context, const ContactTable& contacts, const Constraints& constraints,
+                BodyTable& bodies, IslandLists& lists) {
+    const auto is_asleep = [&](std::uint32_t body) { return bodies.traits[body].motion_state == MotionState::Asleep; };
+    const auto is_near = [&](std::uint32_t body) { return lists.near_sleeper[lists.sets.find(body)] != 0; };
+    find_sets_near_sleepers(bodies, constraints, lists);
+    for (const Constraint& c : constraints.all)
+        if (c.on_sleeper || c.moves == Moves::Neither || is_near(c.body_a) || is_near(c.body_b))
+            wake_at(context, contacts, c, bodies, lists.blows);
+    std::erase_if(lists.blows, [&](const Blow& blow) { return !is_asleep(blow.body) && !is_near(blow.body); });
 }
 
 }  // namespace
@@ -68,11 +74,8 @@ void drop_blows_far_from_sleepers(const BodyTable& bodies, const Constraints& co
 void wake_touched(const StepContext& context, const MotionStates& state, Constraints& constraints, IslandLists& lists) {
     const Settings& settings = context.settings;
     lists.blows.clear();
-    if (!state.bodies.asleep.bodies.empty())
-        for (const Constraint& constraint : constraints.all)
-            wake_at(context, state.contacts, constraint, state.bodies, lists.blows);
+    if (constraints.beside_sleepers) find_blows(context, state.contacts, constraints, state.bodies, lists);
     const std::size_t before = state.bodies.awake.size();
-    drop_blows_far_from_sleepers(state.bodies, constraints, lists);
     wake_struck(state, settings, lists.blows);
     wake_requested_islands(state, settings);
     // Woken bodies add their resting contacts, which are still valid because nothing has moved since.

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "fase/core/detail/prefetch.hpp"
 #include "fase/world/detail/stages.hpp"
 
 namespace fase {
@@ -101,8 +102,11 @@ void publish_events(const Settings& settings, const ColliderTable& colliders, co
     // Hits that the last step did not end are told now, in the order of pairs; those of contacts that ended, too.
     const std::vector<OpenHit> open = std::exchange(contacts.open_hits, {});
     std::size_t first = 0, next = 0;
-    for (const std::uint32_t index : contacts.active.values) {
-        Contact& c = contacts[index];
+    const std::vector<std::uint32_t>& active = contacts.active.values;
+    constexpr std::size_t prefetch_ahead = 6;
+    for (std::size_t i = 0; i < active.size(); ++i) {
+        if (i + prefetch_ahead < active.size()) detail::prefetch(contacts[active[i + prefetch_ahead]]);
+        Contact& c = contacts[active[i]];
         if (c.sensor) {
             set_touching_now(c);
         } else {

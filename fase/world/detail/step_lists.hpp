@@ -35,6 +35,8 @@ struct Constraints {
     std::vector<std::uint8_t> reused;      ///< by active pair: the manifolds of the last step were reused
     std::vector<MiddlePath> middle_paths;  ///< of fast bodies, and of contacts with meshes; in the order of pairs
     std::vector<std::uint8_t> roles;       ///< by body, inside gather_constraints(): what contacts do to it
+    std::uint32_t points = 0;              ///< of all constraints together
+    bool beside_sleepers = false;          ///< a constraint may have a dynamic body that sleeps
 };
 
 /// A body that is struck, and the momentum of what strikes it in kg m/s.
