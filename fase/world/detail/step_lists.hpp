@@ -56,6 +56,7 @@ struct IslandLists {
 struct IslandActivity {
     std::uint32_t bodies = 0, active_bodies = 0;
     bool must_stay_awake = false;  ///< a body moves too fast, or may not sleep
+    bool searched = false;         ///< what its moving bodies keep awake matters
 };
 
 /// Inside "sleep".
@@ -65,6 +66,7 @@ struct SleepLists {
     std::vector<std::uint32_t> below;       ///< bodies, inside keep_below()
     /// Inside find_kept_awake(): moving bodies that touch one at rest, ascending.
     std::vector<std::uint32_t> beside_rested;
+    std::vector<const dynamics::Constraint*> joined;  ///< inside find_searched(): touches that began
 };
 
 }  // namespace fase
