@@ -91,7 +91,6 @@ void compute_manifolds(const CollideTables& tables, Contact& c) {
     const auto& [settings, bodies, colliders, sweep, contacts] = tables;
     const BodyMotion& a = bodies.motion[c.body_a];
     const BodyMotion& b = bodies.motion[c.body_b];
-    const PairMotion motion = c.manifolds > 0 ? pair_motion(c, a, b) : PairMotion();
     const Collider& ca = colliders[c.collider_a];
     const Collider& cb = colliders[c.collider_b];
     const SharedShape& shape_a = colliders.shapes[ca.shape];
@@ -109,7 +108,7 @@ void compute_manifolds(const CollideTables& tables, Contact& c) {
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, frames.b_in_a, margin);
     ContactManifold& m = contacts.manifolds.places(c)[0];
     store_manifold(c, m, in_world_axes(manifold, pose_a, pose_b, frames, is_half_space(shape_a.shape), b_from_a), a, b,
-                   motion, std::min(0.05f, 0.2f * scale));
+                   std::min(0.05f, 0.2f * scale));
     c.reusable = manifold.count >= 3 && !c.sensor;  // sensors report in the step in which shapes part
     m.a_rolls = is_curved(shape_a.shape);
     m.b_rolls = is_curved(shape_b.shape);

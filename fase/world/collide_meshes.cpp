@@ -89,12 +89,11 @@ void store(const CollideTables& tables, Contact& c, const FoundManifolds& found)
     const BodyMotion& a = tables.bodies.motion[c.body_a];
     const BodyMotion& b = tables.bodies.motion[c.body_b];
     const MeshPair pair(tables.bodies, tables.colliders, c);
-    const PairMotion motion = c.manifolds > 0 ? pair_motion(c, a, b) : PairMotion();
     const float radius = std::max(tables.colliders.shapes[tables.colliders[c.collider_a].shape].inner_radius,
                                   tables.colliders.shapes[tables.colliders[c.collider_b].shape].inner_radius);
     c.reuse_distance = 0.1f * radius;
     const auto places = tables.contacts.manifolds.places(c);
-    store_manifolds(c, places, std::span(found.all).first(found.count), a, b, motion, std::min(0.05f, 0.2f * radius));
+    store_manifolds(c, places, std::span(found.all).first(found.count), a, b, std::min(0.05f, 0.2f * radius));
     c.reusable = false;  // other triangles may come near while no point of these moves
     for (std::size_t i = 0; i < found.count; ++i) {
         places[i].a_rolls = pair.a_is_curved();

@@ -89,47 +89,74 @@ template <class F> QuatOf<Float4> load_quats(const F& get) {
     return {x, y, z, w};
 }
 
-/// The points of a manifold, from the centres of mass of both bodies.
-struct PlacedPoints {
-    Vec3 from_a[4], from_b[4];
+Vec3Of<Float4> in_all_lanes(Vec3 v) { return {v.x, v.y, v.z}; }
+Mat3Of<Float4> in_all_lanes(const Mat3& m) { return {in_all_lanes(m.x), in_all_lanes(m.y), in_all_lanes(m.z)}; }
 
+/// The points of a manifold when it was computed, from the centres of mass of both bodies: one in each lane.
+struct PlacedPoints {
+    Vec3Of<Float4> from_a, from_b;
+
+    PlacedPoints() = default;
     explicit PlacedPoints(const ContactManifold& m) {
         const Vec3 second = cross(m.normal, m.first_tangent);
-        for (int i = 0; i < m.count; ++i) {
-            const Vec3 from_centre = m.first_tangent * m.x[i] + second * m.y[i];
-            from_a[i] = m.first_offset_a + from_centre;
-            from_b[i] = m.first_offset_b + from_centre;
-        }
+        const Vec3Of<Float4> from_centre =
+            in_all_lanes(m.first_tangent) * Float4::load(m.x) + in_all_lanes(second) * Float4::load(m.y);
+        from_a = in_all_lanes(m.first_offset_a) + from_centre;
+        from_b = in_all_lanes(m.first_offset_b) + from_centre;
+    }
+    /// Turns the points with the bodies.
+    void move(const PairMotion& motion) {
+        from_a = from_a + in_all_lanes(motion.a.change) * from_a;
+        from_b = from_b + in_all_lanes(motion.b.change) * from_b;
+    }
+};
+
+/// What a new manifold takes over from the one before it.
+struct OldPoints {
+    int count;
+    std::uint32_t feature[4];
+    float impulse[4];
+    Vec3 friction;
+    float twist_impulse;
+    PlacedPoints placed;  ///< set by place()
+
+    explicit OldPoints(const ContactManifold& m)
+        : count(m.count),
+          friction(m.tangent * m.friction_impulse[0] + cross(m.normal, m.tangent) * m.friction_impulse[1]),
+          twist_impulse(m.twist_impulse) {
+        std::copy_n(m.feature, 4, feature);
+        std::copy_n(m.impulse, 4, impulse);
+    }
+    /// Places the points where they are now.
+    void place(const ContactManifold& m, const PairMotion& motion) {
+        placed = PlacedPoints(m);
+        placed.move(motion);
     }
 };
 
 /// Gives each new point the impulses of an old one for warm starting: first of one with the same feature nearby, then
 /// of the nearest one. A place counts as near when it is near on either body: points of a sliding box move with it.
 /// Features alone do not suffice: they change on flush faces.
-void match_points(ContactManifold& m, const ContactManifold& old, const PairMotion& motion, float match_distance) {
+void match_points(ContactManifold& m, const OldPoints& old, float match_distance) {
     const PlacedPoints now(m);
-    PlacedPoints before(old);
-    for (int i = 0; i < old.count; ++i) {
-        before.from_a[i] = motion.a.turned(before.from_a[i]);
-        before.from_b[i] = motion.b.turned(before.from_b[i]);
+    float distance_squared[4][4];
+    for (int i = 0; i < m.count; ++i) {
+        const auto squared = [i](const Vec3Of<Float4>& here, const Vec3Of<Float4>& there) {
+            return length_squared(Vec3Of<Float4>{here.x.v[i], here.y.v[i], here.z.v[i]} - there);
+        };
+        const Float4 on_a = squared(now.from_a, old.placed.from_a), on_b = squared(now.from_b, old.placed.from_b);
+        select(on_b < on_a, on_b, on_a).store(distance_squared[i]);
     }
-    const auto distance_squared = [&](int i, int j) {
-        return std::min(length_squared(now.from_a[i] - before.from_a[j]),
-                        length_squared(now.from_b[i] - before.from_b[j]));
-    };
-    const bool single = m.count == 1 && old.count == 1;
-    const float limit = single ? Aabb::infinity : match_distance * match_distance;
     bool used[4] = {}, matched[4] = {};
     for (const bool by_feature : {true, false})
         for (int i = 0; i < m.count; ++i) {
             if (matched[i]) continue;
-            float nearest = limit;
+            float nearest = match_distance * match_distance;
             int match = -1;
             for (int j = 0; j < old.count; ++j) {
                 if (used[j] || (by_feature && old.feature[j] != m.feature[i])) continue;
-                const float squared = distance_squared(i, j);
-                if (!(squared < nearest)) continue;
-                nearest = squared;
+                if (!(distance_squared[i][j] < nearest)) continue;
+                nearest = distance_squared[i][j];
                 match = j;
             }
             if (match < 0) continue;
@@ -157,14 +184,16 @@ void set_points(ContactManifold& m, const WorldManifold& world, Quat rotation_a)
     }
 }
 
-/// Gives a manifold the friction and the impulses of an old one.
-void take_over(ContactManifold& m, const ContactManifold& old, const PairMotion& motion, float match_distance) {
-    const Vec3 friction =
-        old.tangent * old.friction_impulse[0] + cross(old.normal, old.tangent) * old.friction_impulse[1];
-    m.friction_impulse[0] = dot(friction, m.tangent);
-    m.friction_impulse[1] = dot(friction, cross(m.normal, m.tangent));
+/// Gives a manifold the friction and the impulses of an old one. `single`: both have one point.
+void take_over(ContactManifold& m, const OldPoints& old, bool single, float match_distance) {
+    m.friction_impulse[0] = dot(old.friction, m.tangent);
+    m.friction_impulse[1] = dot(old.friction, cross(m.normal, m.tangent));
     m.twist_impulse = old.twist_impulse;
-    match_points(m, old, motion, match_distance);
+    if (single) {
+        m.impulse[0] = old.impulse[0];
+    } else {
+        match_points(m, old, match_distance);
+    }
 }
 
 /// Stores how the bodies stand where the manifolds are computed.
@@ -256,21 +285,25 @@ unsigned reuse_four(const ReuseInput (&inputs)[reused_together]) {
     return bits;
 }
 
-void store_manifold(Contact& c, ContactManifold& m, const WorldManifold& world, const BodyMotion& a,
-                    const BodyMotion& b, const PairMotion& motion, float match_distance) {
-    const ContactManifold old = m;
+// Inlines all that it calls: most contacts of scenes in motion come here in every step.
+[[gnu::flatten]] void store_manifold(Contact& c, ContactManifold& m, const WorldManifold& world, const BodyMotion& a,
+                                     const BodyMotion& b, float match_distance) {
     const bool had_points = c.manifolds != 0;
+    OldPoints old(m);
+    const bool single = world.count == 1 && old.count == 1;  // matches at any distance
+    if (had_points && world.count > 0 && !single) old.place(m, pair_motion(c, a, b));
     set_points(m, world, a.rotation);
     c.manifolds = world.count > 0 ? 1 : 0;
     c.points = m.count;
     if (c.manifolds == 0) return;
     set_motion(c, {&m, 1}, a, b);
-    if (had_points) take_over(m, old, motion, match_distance);
+    if (had_points) take_over(m, old, single, match_distance);
 }
 
 void store_manifolds(Contact& c, std::span<ContactManifold> places, std::span<const KeyedManifold> worlds,
-                     const BodyMotion& a, const BodyMotion& b, const PairMotion& motion, float match_distance) {
+                     const BodyMotion& a, const BodyMotion& b, float match_distance) {
     std::vector<ContactManifold> old(places.begin(), places.begin() + c.manifolds);
+    const PairMotion motion = old.empty() ? PairMotion() : pair_motion(c, a, b);
     c.manifolds = static_cast<std::uint16_t>(worlds.size());
     c.points = 0;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
@@ -283,7 +316,10 @@ void store_manifolds(Contact& c, std::span<ContactManifold> places, std::span<co
         c.points = static_cast<std::uint16_t>(c.points + m.count);
         ContactManifold* before = match_of(worlds[i], old);
         if (before == nullptr) continue;
-        take_over(m, *before, motion, match_distance);
+        OldPoints points(*before);
+        const bool single = m.count == 1 && points.count == 1;
+        if (!single) points.place(*before, motion);
+        take_over(m, points, single, match_distance);
         before->count = 0;
     }
     if (c.manifolds != 0) set_motion(c, places.first(worlds.size()), a, b);

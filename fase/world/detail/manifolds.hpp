@@ -69,11 +69,10 @@ struct WorldManifold {
     std::uint32_t feature[4] = {};
 };
 
-/// Stores the manifold of two convex shapes in their contact. Its points take over the impulses of old points near by.
-/// `motion`: since the old points; not read when there are none.
+/// Stores the manifold of two convex shapes in their contact. Its points take over the impulses of old points near by;
+/// a single point those of a single point anywhere.
 void store_manifold(dynamics::Contact& contact, dynamics::ContactManifold& manifold, const WorldManifold& world,
-                    const dynamics::BodyMotion& a, const dynamics::BodyMotion& b, const PairMotion& motion,
-                    float match_distance);
+                    const dynamics::BodyMotion& a, const dynamics::BodyMotion& b, float match_distance);
 
 /// A manifold in world axes and the key that names it in its contact.
 struct KeyedManifold : WorldManifold {
@@ -84,6 +83,6 @@ struct KeyedManifold : WorldManifold {
 /// the same key, or else from the one with the most similar normal. Their materials are then to be set.
 void store_manifolds(dynamics::Contact& contact, std::span<dynamics::ContactManifold> places,
                      std::span<const KeyedManifold> worlds, const dynamics::BodyMotion& a,
-                     const dynamics::BodyMotion& b, const PairMotion& motion, float match_distance);
+                     const dynamics::BodyMotion& b, float match_distance);
 
 }  // namespace fase
