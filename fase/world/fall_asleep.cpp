@@ -91,7 +91,7 @@ bool find_searched(const StepContext& context, const BodyTable& bodies, const Co
     bool any = false;
     for (const std::uint32_t body : bodies.awake)
         if (all || may_sleep_apart(context.settings, bodies, lists, body)) searched(body) = any = true;
-    if (all) return any;
+    if (all || (!any && !constraints.beside_sleepers)) return any;
     lists.joined.clear();
     for (const dynamics::Constraint& c : constraints.all) {
         const bool between = c.moves == dynamics::Moves::Both && !c.touches;

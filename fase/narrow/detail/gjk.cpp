@@ -174,14 +174,14 @@ bool has_corner(const Simplex& simplex, Vec3d difference) {
     return false;
 }
 
-}  // namespace
-
-GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, const GjkOptions& options) {
+/// gjk() of two cores, whose farthest points in a direction `support_a` and `support_b` return.
+template <class A, class B>
+GjkResult find_nearest(const A& support_a, const B& support_b, const TransformD& b_in_a, const GjkOptions& options) {
     constexpr int max_rounds = 128;
     const auto corner_along = [&](Vec3d direction) {
         SimplexCorner corner;
-        corner.on_a = a.support(direction);
-        corner.on_b = transform(b_in_a, b.support(transpose_times(b_in_a.rotation, -direction)));
+        corner.on_a = support_a(direction);
+        corner.on_b = transform(b_in_a, support_b(transpose_times(b_in_a.rotation, -direction)));
         corner.difference = corner.on_a - corner.on_b;
         return corner;
     };
@@ -246,6 +246,21 @@ GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, co
     result.distance = std::sqrt(squared);
     result.normal = v * (-1 / result.distance);
     return result;
+}
+
+}  // namespace
+
+GjkResult gjk(const CoreView& a, const CoreView& b, const TransformD& b_in_a, const GjkOptions& options) {
+    const auto core = [](const CoreView& view) { return [&view](Vec3d d) { return view.support(d); }; };
+    if (a.table != &core_table<Box> || b.table != &core_table<Box>)
+        return find_nearest(core(a), core(b), b_in_a, options);
+    // Boxes in heaps come here often, and their support points are cheaper than a call.
+    const auto box = [](const CoreView& view) {
+        return [half = to_double(static_cast<const Box*>(view.shape)->half)](Vec3d d) {
+            return Vec3d{d.x < 0 ? -half.x : half.x, d.y < 0 ? -half.y : half.y, d.z < 0 ? -half.z : half.z};
+        };
+    };
+    return find_nearest(box(a), box(b), b_in_a, options);
 }
 
 }  // namespace fase::narrow
