@@ -71,12 +71,13 @@ WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& p
 }
 
 /// Loads what update_active() will read of the active contacts after number i.
-void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
+void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i) {
     constexpr std::size_t near = 4, far = 8;
-    if (i + far < end) detail::prefetch(contacts[contacts.active.values[i + far]]);
-    if (i + near >= end) return;
-    const Contact& next = contacts[contacts.active.values[i + near]];
-    detail::prefetch(contacts.manifolds[next.first_manifold]);
+    const std::vector<std::uint32_t>& active = contacts.active.values;
+    if (i + far < active.size()) detail::prefetch(contacts[active[i + far]]);
+    if (i + near >= active.size()) return;
+    const Contact& next = contacts[active[i + near]];
+    if (next.manifolds != 0) detail::prefetch(contacts.manifolds[next.first_manifold]);
     detail::prefetch(bodies.motion[next.body_a]);
     detail::prefetch(bodies.motion[next.body_b]);
 }
@@ -101,15 +102,17 @@ void compute_manifolds(const CollideTables& tables, Contact& c) {
     const float radius_a = shape_a.inner_radius > 0 ? shape_a.inner_radius : Aabb::infinity;
     const float radius_b = shape_b.inner_radius > 0 ? shape_b.inner_radius : Aabb::infinity;
     const float scale = std::min({radius_a, radius_b, 1e6f});
+    const bool was_computed = c.reuse_distance > 0;
     c.reuse_distance = 0.1f * scale;
     const LocalPose pose_a = collider_pose(bodies, ca), pose_b = collider_pose(bodies, cb);
     const NearbyFrames frames(pose_a, pose_b, shape_a.shape, shape_b.shape, exact_b_from_a);
     const float margin = tables.margin(c);
     const narrow::Manifold manifold = narrow::collide(shape_a.shape, shape_b.shape, frames.b_in_a, margin);
+    c.reusable = manifold.count >= 3 && !c.sensor;  // sensors report in the step in which shapes part
+    if (manifold.count == 0 && c.manifolds == 0 && was_computed) return;  // nothing changes: does not load the manifold
     ContactManifold& m = contacts.manifolds.places(c)[0];
     store_manifold(c, m, in_world_axes(manifold, pose_a, pose_b, frames, is_half_space(shape_a.shape), b_from_a), a, b,
                    std::min(0.05f, 0.2f * scale));
-    c.reusable = manifold.count >= 3 && !c.sensor;  // sensors report in the step in which shapes part
     m.a_rolls = is_curved(shape_a.shape);
     m.b_rolls = is_curved(shape_b.shape);
 }
@@ -129,34 +132,33 @@ void update_contacts(const CollideTables& tables, std::span<const std::uint32_t>
     collide_with_meshes(tables, meshes, tasks);
 }
 
-/// Updates the active contacts [begin, end), a few dozen, and sets reused[i] for each: first those that may be reused,
-/// four at a time.
+/// Updates the active contacts [begin, end) and sets reused[i] for each. Those that may be reused wait until there are
+/// four.
 void update_active(const CollideTables& tables, std::size_t begin, std::size_t end, std::span<std::uint8_t> reused) {
     ContactTable& contacts = tables.contacts;
-    const auto contact = [&](std::size_t i) -> Contact& { return contacts[contacts.active.values[i]]; };
     ReuseInput inputs[reused_together];
-    std::size_t at[reused_together], count = 0;
+    std::size_t at[reused_together], waiting = 0;
+    const auto finish = [&](std::size_t i, Contact& c, bool was_reused) {
+        reused[i] = was_reused ? 1 : not_reused;
+        if (!was_reused) compute_manifolds(tables, c);
+    };
     for (std::size_t i = begin; i < end; ++i) {
-        prefetch_contact(tables.bodies, contacts, i, end);
-        Contact& c = contact(i);
+        prefetch_contact(tables.bodies, contacts, i);
+        Contact& c = contacts[contacts.active.values[i]];
         reused[i] = c.on_mesh && !c.sensor ? on_mesh : not_reused;
-        if (!c.reusable || c.sensor) continue;
-        if (c.manifolds != 1) {
-            reused[i] = reuse_manifolds(reuse_input(tables, c)) ? 1 : 0;
+        if (c.sensor || c.on_mesh) continue;
+        if (!c.reusable || c.manifolds != 1) {
+            finish(i, c, c.reusable && reuse_manifolds(reuse_input(tables, c)));
             continue;
         }
-        at[count] = i;
-        inputs[count++] = reuse_input(tables, c);
-        if (count < reused_together) continue;
+        at[waiting] = i;
+        inputs[waiting++] = reuse_input(tables, c);
+        if (waiting < reused_together) continue;
+        waiting = 0;
         const unsigned bits = reuse_four(inputs);
-        for (std::size_t k = 0; k < reused_together; ++k) reused[at[k]] = bits >> k & 1;
-        count = 0;
+        for (std::size_t k = 0; k < reused_together; ++k) finish(at[k], *inputs[k].contact, (bits >> k & 1) != 0);
     }
-    for (std::size_t k = 0; k < count; ++k) reused[at[k]] = reuse_manifolds(inputs[k]) ? 1 : 0;
-    for (std::size_t i = begin; i < end; ++i) {
-        if (i + 2 < end) detail::prefetch(contacts.manifolds[contact(i + 2).first_manifold]);
-        if (Contact& c = contact(i); reused[i] == not_reused && !c.sensor) compute_manifolds(tables, c);
-    }
+    for (std::size_t k = 0; k < waiting; ++k) finish(at[k], *inputs[k].contact, reuse_manifolds(inputs[k]));
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
@@ -187,11 +189,8 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
     const CollideTables tables{context.settings, bodies, colliders, moved.sweep, contacts};
     check_resting(tables, constraints.checked, context.tasks);
     constraints.reused.assign(contacts.active.size(), 0);
-    parallel_ranges(context.tasks, contacts.active.size(), 64, [&](std::size_t begin, std::size_t end) {
-        constexpr std::size_t group = 32;
-        for (std::size_t i = begin; i < end; i += group)
-            update_active(tables, i, std::min(i + group, end), constraints.reused);
-    });
+    parallel_ranges(context.tasks, contacts.active.size(), 64,
+                    [&](std::size_t begin, std::size_t end) { update_active(tables, begin, end, constraints.reused); });
     update_meshes(tables, constraints.reused, context.tasks);
     note_middles(bodies, colliders, moved, contacts, constraints);
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);

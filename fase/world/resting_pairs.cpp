@@ -35,7 +35,7 @@ void update_resting(const MotionStates& state, std::span<const Pair> found) {
             continue;
         }
         kept.push_back(pair);
-        contacts[contact].reusable = false;
+        compute_anew(contacts[contact]);
         contacts.to_check.push_back(contact);
     }
     for (const Pair pair : found) {

@@ -124,7 +124,7 @@ void update_active(const MotionStates& state, std::span<const Pair> found) {
             const Pair pair = list.pairs[i];
             dynamics::Contact& contact = contacts[list.values[i]];
             if (has_ended(state.bodies, state.colliders, state.broad_phase, pair, contact)) return true;
-            if ((changes[pair.a] | changes[pair.b]) & edited) contact.reusable = false;
+            if ((changes[pair.a] | changes[pair.b]) & edited) compute_anew(contact);
             return false;
         },
         [&](std::uint32_t contact) { end_contact(state.bodies, state.colliders, contacts, state.events, contact); },

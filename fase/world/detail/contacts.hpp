@@ -63,6 +63,11 @@ void end_contact(BodyTable& bodies, const ColliderTable& colliders, ContactTable
                                                            const dynamics::Contact& contact);
 /// Sorts ContactTable::removed, which event_colliders() searches: at the beginning of track_pairs().
 void sort_removed(ContactTable& contacts);
+/// Lets the next step compute the manifolds of a contact from its shapes, as if it had just begun.
+inline void compute_anew(dynamics::Contact& contact) {
+    contact.reusable = false;
+    contact.reuse_distance = 0;
+}
 /// Restarts the time that a body has rested; a time that is still negative after an edit stays.
 inline void restart_rest(BodyTable& bodies, std::uint32_t body) {
     float& rest = bodies.motion[body].sleep_time;
