@@ -10,6 +10,13 @@ using broad::Pair;
 using dynamics::Contact;
 using dynamics::ContactManifold;
 
+void reserve_contacts(ContactTable& contacts, std::size_t count) {
+    const std::size_t size = contacts.all.size() + count;
+    if (contacts.all.capacity() < size) contacts.all.reserve(std::max(size, 2 * contacts.all.capacity()));
+    contacts.manifolds.reserve_for(count);
+    contacts.graph.reserve(size);
+}
+
 std::uint32_t add_contact(const ColliderTable& colliders, ContactTable& contacts, Pair pair) {
     std::uint32_t index;
     if (contacts.free.empty()) {
@@ -167,6 +174,10 @@ void gather_constraints(const BodyTable& bodies, float slop, ContactTable& conta
     constraints.beside_sleepers = false;
     constraints.points = 0;
     const std::vector<std::uint32_t>& active = contacts.active.values;
+    if (constraints.all.capacity() < active.size()) {  // the first time; a manifold each is most often enough
+        constraints.all.reserve(2 * active.size());
+        constraints.results.reserve(2 * active.size());
+    }
     for (std::size_t at = 0; at < active.size(); ++at) {
         if (at + prefetch_ahead < active.size()) detail::prefetch(contacts[active[at + prefetch_ahead]]);
         const std::uint32_t index = active[at];

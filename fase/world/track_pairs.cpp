@@ -118,6 +118,7 @@ void update_active(const MotionStates& state, std::span<const Pair> found) {
     ContactTable& contacts = state.contacts;
     const std::vector<std::uint8_t>& changes = state.broad_phase.changes;
     pairs::PairList& list = contacts.active;
+    if (found.size() > contacts.free.size()) reserve_contacts(contacts, found.size() - contacts.free.size());
     list.update(
         found,
         [&](std::size_t i) {

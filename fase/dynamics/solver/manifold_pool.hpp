@@ -55,6 +55,12 @@ public:
         std::ranges::copy(places(before), places(c).begin());
         if (before.capacity != 0) release_span(before);
     }
+    /// Allocates for the manifolds of `count` new contacts of one manifold each, twice as much as there is when the
+    /// pool must grow.
+    void reserve_for(std::size_t count) {
+        const std::size_t size = all_.size() + count;
+        if (all_.capacity() < size) all_.reserve(std::max(size, 2 * all_.capacity()));
+    }
     /// Frees the places of a contact that ends.
     void release(Contact& c) {
         if (c.capacity == 0) return;

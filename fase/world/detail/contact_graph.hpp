@@ -19,6 +19,10 @@ public:
         nodes_.clear();
         heads_.clear();
     }
+    /// Allocates for contacts with indices below `size`.
+    void reserve(std::size_t size) {
+        if (nodes_.capacity() < size) nodes_.reserve(std::max(size, 2 * nodes_.capacity()));
+    }
     /// Links a contact that is not linked. O(1).
     void add(std::uint32_t contact, std::uint32_t collider_a, std::uint32_t collider_b) {
         if (nodes_.size() <= contact) nodes_.resize(contact + std::size_t{1});

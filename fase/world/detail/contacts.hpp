@@ -50,6 +50,8 @@ template <class F> void for_each_touched(const BodyContacts& of, std::uint32_t b
 // Contacts and their lists (world/contacts.cpp).
 /// Initialises a free contact for a pair and returns its index; the caller adds it to a list.
 [[nodiscard]] std::uint32_t add_contact(const ColliderTable& colliders, ContactTable& contacts, broad::Pair pair);
+/// Allocates for `count` more contacts, so that a scene that begins does not grow its tables in many turns.
+void reserve_contacts(ContactTable& contacts, std::size_t count);
 /// Frees a contact and reports the end of the touch. Removes it from the resting list, but not from the active one.
 void end_contact(BodyTable& bodies, const ColliderTable& colliders, ContactTable& contacts, Events& events,
                  std::uint32_t contact);
