@@ -15,6 +15,7 @@
 #include "cli/distance.hpp"
 #include "cli/draw.hpp"
 #include "cli/generate.hpp"
+#include "cli/impact.hpp"
 #include "cli/info.hpp"
 #include "cli/level/level.hpp"
 #include "cli/pairs.hpp"
@@ -45,6 +46,7 @@ int run_program(int count, char** arguments) {
     add_info(program, registry);
     add_generate(program, registry);
     add_distance(program, registry);
+    add_impact(program, registry);
     add_draw(program, registry);
     add_pairs(program, registry);
     add_query(program, registry);

@@ -54,6 +54,7 @@
 #include "fase/narrow/collide_mesh.hpp"
 #include "fase/narrow/dispatch.hpp"
 #include "fase/narrow/distance.hpp"
+#include "fase/narrow/impact.hpp"
 #include "fase/narrow/manifold.hpp"
 #include "fase/pairs/box_sets.hpp"
 #include "fase/pairs/filter.hpp"

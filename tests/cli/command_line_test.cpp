@@ -11,7 +11,7 @@ TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
     const Outcome help = run_fase({"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* command : {"run", "view", "info", "generate", "distance", "pairs", "query"}) {
+    for (const char* command : {"run", "view", "info", "generate", "distance", "impact", "pairs", "query"}) {
         EXPECT_NE(help.out.find(std::string("\n  ") + command), std::string::npos) << command;
         const Outcome own = run_fase({command, "--help"});
         EXPECT_EQ(own.code, 0);
@@ -22,7 +22,7 @@ TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
 
 TEST(CommandLine, EachExampleOfTheHelpIsAccepted) {
     // Only parses the commands: the files do not exist.
-    for (const char* command : {"run", "view", "info", "generate", "distance", "pairs", "query"}) {
+    for (const char* command : {"run", "view", "info", "generate", "distance", "impact", "pairs", "query"}) {
         const std::string help = run_fase({command, "--help"}).out;
         std::size_t examples = 0;
         const std::string mark = std::string("\n  fase ") + command;
@@ -77,6 +77,7 @@ TEST(CommandLine, InvalidArgumentsAreRefusedAndNamed) {
         {{"view", "x", "--port", "65536"}, "--port: found \"65536\""},
         {{"generate", "castle"}, "--output"},
         {{"distance"}, "PAIRS.json"},
+        {{"impact"}, "DIR"},
         {{"info", "a\nb", "c\x1b[31m\xff"}, "c\\x1b[31m\\xff: found an unknown argument"},
     };
     for (const Case& one : cases) {
