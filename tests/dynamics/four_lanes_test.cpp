@@ -50,7 +50,7 @@ struct MovingBodies {
             m.moments = {1, 2, 3};
             m.is_dynamic = plain || random.below(8) != 0;
             m.locks = static_cast<std::uint8_t>(plain || random.below(8) != 0 ? 0 : random.below(64));
-            m.gyroscopic = random.below(4) == 0;
+            m.gyroscopic = random.below(2) == 0;
         }
     }
 };
