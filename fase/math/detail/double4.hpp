@@ -14,9 +14,9 @@ struct Double4 {
     };
     Half lo, hi;
 
-    Double4() : Double4(0.0) {}
-    Double4(double value) : lo{value, value}, hi{value, value} {}
-    Double4(Half low, Half high) : lo(low), hi(high) {}
+    constexpr Double4() : Double4(0.0) {}
+    constexpr Double4(double value) : lo{value, value}, hi{value, value} {}
+    constexpr Double4(Half low, Half high) : lo(low), hi(high) {}
     explicit Double4(Float4 a) : lo{a.v[0], a.v[1]}, hi{a.v[2], a.v[3]} {}
 
     friend Double4 operator+(Double4 a, Double4 b) { return {a.lo + b.lo, a.hi + b.hi}; }
@@ -24,7 +24,7 @@ struct Double4 {
     friend Double4 operator*(Double4 a, Double4 b) { return {a.lo * b.lo, a.hi * b.hi}; }
     friend Double4 operator/(Double4 a, Double4 b) { return {a.lo / b.lo, a.hi / b.hi}; }
     friend Double4 operator-(Double4 a) { return {-a.lo, -a.hi}; }
-    friend Mask operator<(Double4 a, Double4 b) { return {a.lo < b.lo, a.hi < b.hi}; }
+    friend constexpr Mask operator<(Double4 a, Double4 b) { return {a.lo < b.lo, a.hi < b.hi}; }
     friend Double4 select(Mask mask, Double4 yes, Double4 no) {
         return {mask.lo ? yes.lo : no.lo, mask.hi ? yes.hi : no.hi};
     }

@@ -14,9 +14,9 @@ struct Float4 {
     using Mask = int __attribute__((vector_size(16)));  ///< -1 where true, else 0
     Lanes v;
 
-    Float4() : Float4(0.0f) {}
-    Float4(float value) : v{value, value, value, value} {}
-    Float4(Lanes value) : v(value) {}
+    constexpr Float4() : Float4(0.0f) {}
+    constexpr Float4(float value) : v{value, value, value, value} {}
+    constexpr Float4(Lanes value) : v(value) {}
     static Float4 load(const float* p) {
         Float4 loaded;
         __builtin_memcpy(&loaded.v, p, sizeof loaded.v);
@@ -29,8 +29,8 @@ struct Float4 {
     friend Float4 operator*(Float4 a, Float4 b) { return a.v * b.v; }
     friend Float4 operator/(Float4 a, Float4 b) { return a.v / b.v; }
     friend Float4 operator-(Float4 a) { return -a.v; }
-    friend Mask operator<(Float4 a, Float4 b) { return a.v < b.v; }
-    friend Mask operator==(Float4 a, Float4 b) { return a.v == b.v; }
+    friend constexpr Mask operator<(Float4 a, Float4 b) { return a.v < b.v; }
+    friend constexpr Mask operator==(Float4 a, Float4 b) { return a.v == b.v; }
     friend Float4 select(Mask mask, Float4 yes, Float4 no) { return mask ? yes.v : no.v; }
     friend Float4 sqrt(Float4 a) {
         return Lanes{std::sqrt(a.v[0]), std::sqrt(a.v[1]), std::sqrt(a.v[2]), std::sqrt(a.v[3])};
