@@ -41,7 +41,7 @@ ROOMS = {
         "wide_bvh": ["boxes", "search", "builders"],
     },
     "geometry": {"detail": [], "shapes": ["detail"]},
-    "narrow": {"detail": [], "pairs": ["detail"]},
+    "narrow": {"detail": [], "pairs": ["detail"], "seams": ["detail"]},
     "level": {"detail": [], "compiler": ["detail"], "visibility": ["detail"]},
     "record": {"recording": [], "trace": [], "export": ["recording"]},
     "scene": {"detail": [], "generate": [], "gltf": ["detail", "generate"]},
@@ -56,6 +56,7 @@ SHARED_ROOMS = {
     ("broad", "search"): {"query", "pairs"},
     ("broad", "row_grid"): {"pairs"},
     ("dynamics", "solver"): {"world"},
+    ("narrow", "seams"): {"world"},
     ("pairs", "detail"): {"world"},
 }
 # Headers directly in `fase/`: what a component's users include. They may include every layer of their component and below.

@@ -3,10 +3,10 @@
 
 namespace fase::checks {
 
-extern const Suite stacks, bounce, rest, determinism;
+extern const Suite stacks, bounce, rest, ghosts, determinism;
 
 std::span<const Suite* const> suites() {
-    static constexpr const Suite* all[]{&stacks, &bounce, &rest, &determinism};
+    static constexpr const Suite* all[]{&stacks, &bounce, &rest, &ghosts, &determinism};
     return all;
 }
 

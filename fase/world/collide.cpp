@@ -8,6 +8,7 @@
 #include "fase/world/detail/collide_tables.hpp"
 #include "fase/world/detail/collider_places.hpp"
 #include "fase/world/detail/manifolds.hpp"
+#include "fase/world/detail/seam_groups.hpp"
 #include "fase/world/detail/stages.hpp"
 
 namespace fase {
@@ -132,9 +133,10 @@ void update_contacts(const CollideTables& tables, std::span<const std::uint32_t>
     collide_with_meshes(tables, meshes, tasks);
 }
 
-/// Updates the active contacts [begin, end) and sets reused[i] for each. Those that may be reused wait until there are
-/// four.
-void update_active(const CollideTables& tables, std::size_t begin, std::size_t end, std::span<std::uint8_t> reused) {
+/// Updates the active contacts [begin, end) and sets reused[i] for each, save those of groups. Those that may be reused
+/// wait until there are four.
+void update_active(const CollideTables& tables, std::size_t begin, std::size_t end, const SeamGroups& seams,
+                   std::span<std::uint8_t> reused) {
     ContactTable& contacts = tables.contacts;
     ReuseInput inputs[reused_together];
     std::size_t at[reused_together], waiting = 0;
@@ -146,7 +148,7 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
         prefetch_contact(tables.bodies, contacts, i);
         Contact& c = contacts[contacts.active.values[i]];
         reused[i] = c.on_mesh && !c.sensor ? on_mesh : not_reused;
-        if (c.sensor || c.on_mesh) continue;
+        if (c.sensor || c.on_mesh || seams.is_grouped[i]) continue;
         if (!c.reusable || c.manifolds != 1) {
             finish(i, c, c.reusable && reuse_manifolds(reuse_input(tables, c)));
             continue;
@@ -159,6 +161,22 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
         for (std::size_t k = 0; k < reused_together; ++k) finish(at[k], *inputs[k].contact, (bits >> k & 1) != 0);
     }
     for (std::size_t k = 0; k < waiting; ++k) finish(at[k], *inputs[k].contact, reuse_manifolds(inputs[k]));
+}
+
+/// Updates the contacts of a group, and corrects them together.
+void update_group(const CollideTables& tables, float seconds, const SeamGroup& group, Constraints& constraints) {
+    const std::span<SeamEntry> entries = std::span(constraints.seams.entries).subspan(group.first, group.count);
+    ContactTable& contacts = tables.contacts;
+    for (SeamEntry& entry : entries) {
+        Contact& c = contacts[entry.contact];
+        entry.before = c;
+        entry.manifold_before = contacts.manifolds.places(c)[0];
+        entry.reused = c.reusable && reuse_manifolds(reuse_input(tables, c));
+        if (!entry.reused) compute_manifolds(tables, c);
+        constraints.reused[entry.active] = entry.reused ? 1 : not_reused;
+    }
+    correct_group({tables.settings, tables.bodies, tables.colliders, tables.sweep, seconds}, contacts, group.mover,
+                  entries, std::span(constraints.seams.contacts).subspan(group.first, group.count));
 }
 
 /// Collides the resting pairs that began or were edited. Contacts that were freed or woken meanwhile are left out.
@@ -189,8 +207,16 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
     const CollideTables tables{context.settings, bodies, colliders, moved.sweep, contacts};
     check_resting(tables, constraints.checked, context.tasks);
     constraints.reused.assign(contacts.active.size(), 0);
-    parallel_ranges(context.tasks, contacts.active.size(), 64,
-                    [&](std::size_t begin, std::size_t end) { update_active(tables, begin, end, constraints.reused); });
+    const SeamGroups& seams = constraints.seams;
+    // What moves less than a quarter of the distance at which contacts are made cannot miss a lone piece by much.
+    const float min_speed = context.seconds > 0 ? 0.25f * context.settings.speculative_distance / context.seconds : 0;
+    find_seam_groups(bodies, colliders, min_speed, contacts, constraints.seams);
+    parallel_ranges(context.tasks, contacts.active.size(), 64, [&](std::size_t begin, std::size_t end) {
+        update_active(tables, begin, end, seams, constraints.reused);
+    });
+    parallel_ranges(context.tasks, seams.all.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) update_group(tables, context.seconds, seams.all[i], constraints);
+    });
     update_meshes(tables, constraints.reused, context.tasks);
     note_middles(bodies, colliders, moved, contacts, constraints);
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);

@@ -8,6 +8,7 @@
 #include "fase/dynamics/solver/contact_lanes.hpp"
 #include "fase/dynamics/solver/islands.hpp"
 #include "fase/geometry/aabb.hpp"
+#include "fase/narrow/seams/seams.hpp"
 
 namespace fase {
 
@@ -25,14 +26,41 @@ struct MiddlePath {
     Vec3d start;                ///< narrow::middle_of() the dynamic body's shape, in the frame of the other
 };
 
+/// A contact that is corrected together with its neighbours, and what it was in the last step.
+struct SeamEntry {
+    std::uint32_t contact = 0, active = 0;  ///< its index, and its place in ContactTable::active
+    bool reused = false;
+    dynamics::Contact before;
+    dynamics::ContactManifold manifold_before;
+};
+
+/// The contacts of one moving collider with what does not move.
+struct SeamGroup {
+    std::uint32_t mover = 0;  ///< collider
+    std::uint32_t first = 0, count = 0;
+};
+
+/// Inside "collide": the contacts that are corrected at seams.
+struct SeamGroups {
+    static constexpr std::uint32_t placed = 1u << 31;
+    std::vector<SeamGroup> all;                 ///< in the order of their first contacts
+    std::vector<SeamEntry> entries;             ///< of all groups; more than these use
+    std::vector<narrow::SeamContact> contacts;  ///< for each entry
+    std::vector<std::uint8_t> is_grouped;       ///< by active pair
+    std::vector<std::uint32_t> movers;          ///< by active pair, inside find_seam_groups()
+    std::vector<std::uint32_t> count_of;        ///< by collider, inside find_seam_groups()
+    std::vector<std::uint32_t> place_of;        ///< by collider, inside find_seam_groups()
+};
+
 /// From "collide": the constraints of this step. "islands" and "solve" list them again when active contacts were added
 /// or bodies were quarantined; the solver fills the results.
 struct Constraints {
     std::vector<dynamics::Constraint> all;         ///< manifolds with points, in the order of ContactTable::active
     std::vector<dynamics::ContactResult> results;  ///< one for each constraint
-    std::vector<std::uint32_t> sensors;    ///< active contacts of sensors, which are collided after the bodies moved
-    std::vector<std::uint32_t> checked;    ///< resting contacts that this step collided
-    std::vector<std::uint8_t> reused;      ///< by active pair: the manifolds of the last step were reused
+    std::vector<std::uint32_t> sensors;  ///< active contacts of sensors, which are collided after the bodies moved
+    std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
+    std::vector<std::uint8_t> reused;    ///< by active pair: the manifolds of the last step were reused
+    SeamGroups seams;
     std::vector<MiddlePath> middle_paths;  ///< of fast bodies, and of contacts with meshes; in the order of pairs
     std::vector<std::uint8_t> roles;       ///< by body, inside gather_constraints(): what contacts do to it
     std::uint32_t points = 0;              ///< of all constraints together
