@@ -41,6 +41,8 @@ SUITES = {
               "where it happens, with its impulse. Elastic bodies keep their energy.",
     "rest": "Sleeping bodies wake when gravity, friction or their support changes, and only then. Sensors see sleepers. Nothing hangs in the "
             "air, sinks when it rolls, or loses accuracy far from the origin.",
+    "ghosts": "What slides, rolls or lands on tiles, T-junctions and blocks moves as on one box, at 0.1 to 60 m/s. Steps and walls stop, ramps and "
+              "valleys turn, closed rooms hold.",
     "determinism": "The same calls give the same bits with any number of threads, with any structure, from a restored snapshot and in a world "
                    "that is built again. Random lives add, remove, change, save and restore; one that fails is shrunk to a short list of "
                    "calls.",
@@ -53,6 +55,8 @@ NOTES = """## Reading the table
   `fallen`: bodies that end half a metre or more below their place. `energy_gain`: the largest total energy above that of the start.
 - `above_rest`: how far a body rises above its unloaded height when what lies on it is taken away.
 - `asleep_after_last_impact`: from the last hit faster than 1 m/s until all bodies sleep.
+- `ghosts`: `worst`, `p99`: the largest difference of velocity from the same start on one box, in any step; of the horizontal part after
+  landings. `kicked`: runs with a difference above 2 cm/s and 2 %. `keeps_*`: speed, by energy, past a bend.
 - `elastic_666`: the scene of [SimBenchmark](https://github.com/leggedrobotics/SimBenchmark), 6 × 6 × 6 elastic balls; the limit is the best published
   error in steps of 4 ms.
 - `sensor_left_*/steps_late`: steps between the one in which an overlap query finds the shapes apart, and the event.

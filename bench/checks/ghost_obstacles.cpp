@@ -168,6 +168,29 @@ Case passes_corner() {
             }};
 }
 
+/// Stacks with friction at random places on a floor of blocks, which must stand as on one box.
+Case stacks_stand(const std::string& name, Floor floor) {
+    return {name,
+            {exactly("fallen", 0), at_most("drift", "m", 0.005), at_most("kinetic", "J", 1e-3),
+             at_least("asleep", "", 1, 1)},
+            false,
+            [floor](Context& context) -> std::vector<double> {
+                CheckWorld world(context);
+                add_floor(world, floor, false, {});
+                Random random(context.seed, 900);
+                for (int i = 0; i < 25; ++i) {
+                    const double x = i % 5 * 4 - 8 + double(random.between(-1, 1));
+                    const double z = i / 5 * 4 - 8 + double(random.between(-1, 1));
+                    const double yaw = 6.28 * double(random.unit());
+                    for (int k = 0; k < 5; ++k)
+                        world.add({.position = {x, 0.3 + 0.6 * k, z}, .rotation = about_axis({0, 1, 0}, yaw)},
+                                  Box{{0.4f, 0.3f, 0.5f}});
+                }
+                const Watched seen = watch(world, 5);
+                return {seen.fallen, seen.drift, seen.kinetic, seen.asleep_at >= 0 ? 1.0 : 0.0};
+            }};
+}
+
 constexpr Material bouncing{.friction = 0.3f, .restitution = 0.7f};
 
 /// Adds the six walls of a room of 4 m, each of tiles × tiles boxes.
@@ -228,6 +251,8 @@ void append_obstacle_cases(std::vector<Case>& all) {
     all.push_back(stopped_by_step("step_1_cm_box", 0.01f, Mover::Box));
     all.push_back(stopped_by_step("step_10_cm_box", 0.1f, Mover::Box));
     all.push_back(stopped_by_step("wall_capsule", 1, Mover::StandingCapsule));
+    all.push_back(stacks_stand("stacks_on_one_box", Floor::Smooth));
+    all.push_back(stacks_stand("stacks_on_blocks", Floor::Blocks));
     all.push_back(passes_corner());
     all.push_back(closed_room("room_of_walls_20_cm", 0.2f, 1));
     all.push_back(closed_room("room_of_tiles_20_cm", 0.2f, 4));

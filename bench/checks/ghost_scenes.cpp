@@ -9,54 +9,54 @@ namespace fase::checks {
 namespace {
 
 constexpr int floor_half = 12;  // metres
-constexpr Material slippery{.friction = 0, .restitution = 0};
 
 /// Adds rows of boxes of random length whose top is y = 0.
-void add_rows(CheckWorld& world) {
+void add_rows(CheckWorld& world, const Material& material) {
     Random random(8101);
     for (int row = -floor_half; row < floor_half; ++row)
         for (double from = -floor_half; from < floor_half;) {
             const double size = std::min(floor_half - from, double(random.between(0.3f, 2)));
-            add_block(world, {from + size / 2, -0.25, row + 0.5}, {static_cast<float>(size / 2), 0.25f, 0.5f});
+            add_block(world, {from + size / 2, -0.25, row + 0.5}, {static_cast<float>(size / 2), 0.25f, 0.5f}, {},
+                      material);
             from += size;
         }
 }
 
-void add_tiles(CheckWorld& world, float height, int layers, float unevenness) {
+void add_tiles(CheckWorld& world, float height, int layers, float unevenness, const Material& material) {
     Random random(8102);
     for (int x = -floor_half; x < floor_half; ++x)
         for (int z = -floor_half; z < floor_half; ++z)
             for (int layer = 0; layer < layers; ++layer) {
                 const double top = double(random.between(-unevenness, unevenness)) - layer * double(height);
-                add_block(world, {x + 0.5, top - double(height) / 2, z + 0.5}, {0.5f, height / 2, 0.5f});
+                add_block(world, {x + 0.5, top - double(height) / 2, z + 0.5}, {0.5f, height / 2, 0.5f}, {}, material);
             }
 }
 
 /// Adds cubes whose face is z = 2 and which stand on the ground.
-void add_wall_of_blocks(CheckWorld& world) {
+void add_wall_of_blocks(CheckWorld& world, const Material& material) {
     for (int x = -floor_half; x < floor_half; ++x)
-        for (int y = 0; y < 2; ++y) add_block(world, {x + 0.5, y + 0.5, 2.5}, {0.5f, 0.5f, 0.5f});
+        for (int y = 0; y < 2; ++y) add_block(world, {x + 0.5, y + 0.5, 2.5}, {0.5f, 0.5f, 0.5f}, {}, material);
 }
 
 }  // namespace
 
-void add_block(CheckWorld& world, Vec3d centre, Vec3 half, Quat rotation) {
-    world.add({.kind = BodyKind::Static, .position = centre, .rotation = rotation}, Box{half}, {.material = slippery});
+void add_block(CheckWorld& world, Vec3d centre, Vec3 half, Quat rotation, const Material& material) {
+    world.add({.kind = BodyKind::Static, .position = centre, .rotation = rotation}, Box{half}, {.material = material});
 }
 
-void add_floor(CheckWorld& world, Floor floor, bool wall) {
+void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& material) {
     switch (floor) {
-        case Floor::Smooth: add_block(world, {0, -0.5, 0}, {floor_half, 0.5f, floor_half}); break;
-        case Floor::Tiles: add_tiles(world, 0.5f, 1, 0); break;
-        case Floor::TJunctions: add_rows(world); break;
-        case Floor::Uneven: add_tiles(world, 0.5f, 1, 1e-4f); break;
-        case Floor::Blocks: add_tiles(world, 1, 2, 0); break;
+        case Floor::Smooth: add_block(world, {0, -0.5, 0}, {floor_half, 0.5f, floor_half}, {}, material); break;
+        case Floor::Tiles: add_tiles(world, 0.5f, 1, 0, material); break;
+        case Floor::TJunctions: add_rows(world, material); break;
+        case Floor::Uneven: add_tiles(world, 0.5f, 1, 1e-4f, material); break;
+        case Floor::Blocks: add_tiles(world, 1, 2, 0, material); break;
     }
     if (!wall) return;
     if (floor == Floor::Smooth) {
-        add_block(world, {0, 1, 2.5}, {floor_half, 1, 0.5f});
+        add_block(world, {0, 1, 2.5}, {floor_half, 1, 0.5f}, {}, material);
     } else {
-        add_wall_of_blocks(world);
+        add_wall_of_blocks(world, material);
     }
 }
 

@@ -17,8 +17,9 @@ enum class Floor {
     Uneven,      ///< tiles whose tops are up to 0.1 mm higher or lower
     Blocks,      ///< two layers of cubes of 1 m
 };
-/// Adds the ground, about 24 m across, without friction. `wall`: and a wall of the same kind, whose face is z = 2.
-void add_floor(CheckWorld& world, Floor floor, bool wall);
+inline constexpr Material slippery{.friction = 0, .restitution = 0};
+/// Adds the ground, 24 m across. `wall`: and a wall of the same kind, whose face is z = 2.
+void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& material = slippery);
 
 /// A body that moves over the ground.
 enum class Mover { Box, SpunBox, Ball, Wheel, LyingCapsule, StandingCapsule };
@@ -35,8 +36,8 @@ struct MoverKind {
 
 /// Adds a body without friction and restitution.
 BodyId add_mover(CheckWorld& world, Mover mover, const BodyDef& def);
-/// Adds a static box without friction.
-void add_block(CheckWorld& world, Vec3d centre, Vec3 half, Quat rotation = {});
+/// Adds a static box.
+void add_block(CheckWorld& world, Vec3d centre, Vec3 half, Quat rotation = {}, const Material& material = slippery);
 
 [[nodiscard]] Vec3d horizontal_direction(Random& random);
 [[nodiscard]] Quat about_axis(Vec3 axis, double angle);

@@ -26,7 +26,8 @@ CoreView view_of(const Shape& shape) {
 
 namespace {
 
-constexpr double gap = 1e-3;  // metres beyond a face that count as over it
+constexpr double gap = 1e-3;     // metres beyond a face that count as over it, for what comes over it
+constexpr double sliver = 1e-4;  // metres inside a face that do not yet count as over it
 
 /// The lowest feature of the shape's core above a plane. A face whose corners miss the lowest point counts as this
 /// point.
@@ -135,7 +136,7 @@ OverFace over_face(const MovingCore& mover, const ShownFaces& faces, int face) {
         double beyond = infinity;
         for (std::size_t k = 0; k < static_cast<std::size_t>(lowest.count); ++k)
             beyond = std::min(beyond, dot(out, lowest.corners[k].position - from));
-        over.now = over.now && beyond <= 0;
+        over.now = over.now && beyond < -sliver;
         over.later = beyond + std::min(0.0, dot(out, mover.path)) <= gap;
         from = to;
     }

@@ -87,7 +87,7 @@ private:
             const double acts =
                 contact.is_live ? -dot(core_.path, contact.normal) - std::max(0.0, contact.separation) : 0;
             if (acts <= 0) continue;
-            if (contact.separation > gap && !contact.is_kept)
+            if (contact.separation > gap && !contact.is_kept && contact.piece.frame == 0)
                 contact.clearance = clearance_of(core_, *contact.piece.shape, contact.piece.pose);
             if (contact.clearance <= gap) pushed += acts;
             any = any || contact.clearance > gap;
@@ -107,7 +107,8 @@ private:
         find_shown(faces, contact, shown);
         if (find_hiding_face(index, shown)) return;
         int own = facing_face(faces, contact.normal);
-        if (!same_direction(faces.plane(own).normal, contact.normal, nearly)) own = entered_face(faces);
+        if (!same_direction(faces.plane(own).normal, contact.normal, nearly))
+            own = contact.piece.frame == 0 ? entered_face(faces) : -1;
         if (own < 0) return;
         if (same_direction(faces.plane(own).normal, contact.normal, rounding) && !rolls_over(faces.plane(own))) return;
         if (!is_covered(index, faces, own, contact.point)) contact.own_face = own;

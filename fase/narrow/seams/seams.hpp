@@ -24,7 +24,7 @@ struct SeamMover {
 struct SeamPiece {
     const Shape* shape = nullptr;  ///< only boxes, hulls and half-spaces have faces that can hide or be hidden
     TransformD pose;
-    std::uint32_t frame = 0;  ///< pieces of the same number do not move against each other
+    std::uint32_t frame = 0;  ///< pieces of the same number do not move against each other; 0: they rest
 };
 
 /// The contact of the moving shape with one piece.

@@ -155,6 +155,10 @@ void correct_group(const SeamTables& tables, ContactTable& contacts, std::uint32
     const Collider& collider = tables.colliders[mover];
     const SharedShape& shape = tables.colliders.shapes[collider.shape];
     if (std::holds_alternative<HalfSpace>(shape.shape)) return;
+    const bool any = std::any_of(entries.begin(), entries.end(), [&](const SeamEntry& entry) {
+        return !entry.reused && contacts[entry.contact].manifolds > 0;
+    });
+    if (!any) return;
     const BodyMotion& motion = tables.bodies.motion[collider.body];
     narrow::SeamMover moving;
     moving.shape = &shape.shape;
@@ -164,7 +168,6 @@ void correct_group(const SeamTables& tables, ContactTable& contacts, std::uint32
     moving.is_fast = tables.sweep[collider.body] > 0;
     moving.inner_radius = shape.inner_radius;
     moving.detour = detour_of(tables, contacts, mover, length(motion.linear_velocity) * tables.seconds);
-    bool any = false;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const Contact& c = contacts[entries[i].contact];
         const bool mover_is_b = c.collider_b == mover;
@@ -173,10 +176,8 @@ void correct_group(const SeamTables& tables, ContactTable& contacts, std::uint32
         seam.piece = {&tables.colliders.shapes[other.shape].shape, pose_near(tables.bodies, other, motion.position),
                       frame_of(tables.bodies, other.body)};
         seam.manifold = read_manifold(c, contacts.manifolds.places(c)[0], mover_is_b);
-        seam.is_kept = entries[i].reused;
-        any = any || (!seam.is_kept && seam.manifold.count > 0);
+        seam.is_kept = entries[i].reused || c.manifolds > 1;
     }
-    if (!any) return;
     narrow::correct_seams(moving, seams);
     for (std::size_t i = 0; i < entries.size(); ++i)
         if (seams[i].changed) store_correction(tables, contacts, entries[i], seams[i].manifold, mover);
