@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "fase/geometry/hull_builder.hpp"
 
 namespace fase::checks {
 namespace {
@@ -32,10 +35,27 @@ void add_tiles(CheckWorld& world, float height, int layers, float unevenness, co
             }
 }
 
+void add_turned_tiles(CheckWorld& world, const Material& material) {
+    const Quat turned = about_axis({0, 1, 0}, 0.4);
+    for (int x = -17; x < 17; ++x)
+        for (int z = -17; z < 17; ++z)
+            add_block(world, rotate(to_double(turned), Vec3d{x + 0.5, -0.25, z + 0.5}), {0.5f, 0.25f, 0.5f}, turned,
+                      material);
+}
+
 /// Adds cubes whose face is z = 2 and which stand on the ground.
 void add_wall_of_blocks(CheckWorld& world, const Material& material) {
     for (int x = -floor_half; x < floor_half; ++x)
         for (int y = 0; y < 2; ++y) add_block(world, {x + 0.5, y + 0.5, 2.5}, {0.5f, 0.5f, 0.5f}, {}, material);
+}
+
+/// A prism of six sides, 0.3 m high, that stands on a base.
+Shape six_sided_prism() {
+    std::vector<Vec3> points;
+    for (const float y : {-0.15f, 0.15f})
+        for (int i = 0; i < 6; ++i) points.push_back(rotate(about_axis({0, 1, 0}, i * 1.0471976), Vec3{0.3f, y, 0}));
+    const Result<ConvexHull> hull = build_convex_hull(points);
+    return hull ? Shape{*hull} : Shape{Box{{0.3f, 0.15f, 0.3f}}};
 }
 
 }  // namespace
@@ -48,6 +68,7 @@ void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& materi
     switch (floor) {
         case Floor::Smooth: add_block(world, {0, -0.5, 0}, {floor_half, 0.5f, floor_half}, {}, material); break;
         case Floor::Tiles: add_tiles(world, 0.5f, 1, 0, material); break;
+        case Floor::TurnedTiles: add_turned_tiles(world, material); break;
         case Floor::TJunctions: add_rows(world, material); break;
         case Floor::Uneven: add_tiles(world, 0.5f, 1, 1e-4f, material); break;
         case Floor::Blocks: add_tiles(world, 1, 2, 0, material); break;
@@ -61,14 +82,19 @@ void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& materi
 }
 
 std::span<const MoverKind> movers() {
-    static constexpr MoverKind all[]{
-        {"box", Mover::Box},     {"spun_box", Mover::SpunBox},           {"ball", Mover::Ball},
-        {"wheel", Mover::Wheel}, {"lying_capsule", Mover::LyingCapsule}, {"standing_capsule", Mover::StandingCapsule}};
+    static constexpr MoverKind all[]{{"box", Mover::Box},
+                                     {"spun_box", Mover::SpunBox},
+                                     {"hull", Mover::Hull},
+                                     {"ball", Mover::Ball},
+                                     {"wheel", Mover::Wheel},
+                                     {"lying_capsule", Mover::LyingCapsule},
+                                     {"standing_capsule", Mover::StandingCapsule}};
     return all;
 }
 
 Shape shape_of(Mover mover) {
     switch (mover) {
+        case Mover::Hull: return six_sided_prism();
         case Mover::Ball: return Sphere{0.25f};
         case Mover::Wheel: return Cylinder{.radius = 0.3f, .half_height = 0.1f};
         case Mover::LyingCapsule:
@@ -97,6 +123,7 @@ BodyDef moving_body(Mover mover, Vec3d at, Vec3d direction, float speed, Random&
     const Vec3 rolls = to_float(cross(Vec3d{0, 1, 0}, direction) * double(speed));
     switch (mover) {
         case Mover::SpunBox: def.angular_velocity = {0, random.between(-3, 3), 0}; [[fallthrough]];
+        case Mover::Hull:
         case Mover::Box:
             def.position.y += 0.15f;
             def.rotation = turned;

@@ -11,18 +11,19 @@ namespace fase::checks {
 /// What the ground is made of. All but Smooth have seams; the surface of all is the plane y = 0, and in `wall` also z
 /// = 2.
 enum class Floor {
-    Smooth,      ///< one box
-    Tiles,       ///< boxes of 1 m
-    TJunctions,  ///< rows of boxes of 0.3 to 2 m
-    Uneven,      ///< tiles whose tops are up to 0.1 mm higher or lower
-    Blocks,      ///< two layers of cubes of 1 m
+    Smooth,       ///< one box
+    Tiles,        ///< boxes of 1 m
+    TurnedTiles,  ///< the same, turned about the vertical axis
+    TJunctions,   ///< rows of boxes of 0.3 to 2 m
+    Uneven,       ///< tiles whose tops are up to 0.1 mm higher or lower
+    Blocks,       ///< two layers of cubes of 1 m
 };
 inline constexpr Material slippery{.friction = 0, .restitution = 0};
 /// Adds the ground, 24 m across. `wall`: and a wall of the same kind, whose face is z = 2.
 void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& material = slippery);
 
 /// A body that moves over the ground.
-enum class Mover { Box, SpunBox, Ball, Wheel, LyingCapsule, StandingCapsule };
+enum class Mover { Box, SpunBox, Hull, Ball, Wheel, LyingCapsule, StandingCapsule };
 struct MoverKind {
     std::string_view name;
     Mover mover;
