@@ -202,6 +202,7 @@ private:
         if (!faces.covers(face, at, gap) ||
             !(faces.covers(face, at + lean * (2 * gap), 1e-4) || faces.covers(face, at + lean * 3e-4, 2e-5)))
             return false;
+        if (shown.count == Shown::capacity) return false;  // others may stand out
         for (int k = 0; k < shown.count; ++k)
             if (above(plane, shown.corners[static_cast<std::size_t>(k)]) > step_) return false;
         return core_.height(plane) >= -deepest_ && !is_covered(other, faces, face, at);
