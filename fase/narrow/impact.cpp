@@ -22,7 +22,7 @@ constexpr double min_width = 0x1p-48;
 constexpr double coarse_width = 0x1p-22;
 
 /// A part of the domain.
-struct Box {
+struct Cell {
     std::array<double, dimensions> lo, hi;  // not initialised: most of the stack is never used
     [[nodiscard]] double width(std::size_t d) const { return hi[d] - lo[d]; }
 };
@@ -38,7 +38,7 @@ struct VertexFace {
     const std::array<MovingPoint, 3>& face;
 
     /// Sets the four corners at a time; `upper`: 1 for the upper time of the box.
-    void corners_at(double time, const Box& box, std::size_t upper, Corners& out) const {
+    void corners_at(double time, const Cell& box, std::size_t upper, Corners& out) const {
         const Vec3d p = at(vertex, time), a = at(face[0], time), b = at(face[1], time), c = at(face[2], time);
         for (std::size_t k = 0; k < 4; ++k) {
             const double u = k & 1 ? box.hi[1] : box.lo[1], v = k & 2 ? box.hi[2] : box.lo[2];
@@ -55,7 +55,7 @@ struct EdgeEdge {
     static constexpr bool triangular = false;
     const std::array<MovingPoint, 2>&a, &b;
 
-    void corners_at(double time, const Box& box, std::size_t upper, Corners& out) const {
+    void corners_at(double time, const Cell& box, std::size_t upper, Corners& out) const {
         const Vec3d a0 = at(a[0], time), a1 = at(a[1], time), b0 = at(b[0], time), b1 = at(b[1], time);
         const auto on = [](Vec3d from, Vec3d to, double share) { return from * (1 - share) + to * share; };
         const Vec3d on_a[2] = {on(a0, a1, box.lo[1]), on(a0, a1, box.hi[1])};
@@ -113,16 +113,16 @@ private:
     double slack_ = 0;
     bool valid_ = true;
     std::optional<Impact> found_;
-    double skipped_ = 1;                 ///< the earliest time of boxes left out because of found_
-    std::array<Box, 3 * 48 + 2> stack_;  ///< each halving leaves one box behind
+    double skipped_ = 1;                  ///< the earliest time of boxes left out because of found_
+    std::array<Cell, 3 * 48 + 2> stack_;  ///< each halving leaves one box behind
     std::size_t count_ = 0;
 
-    void push(const Box& box) { stack_[count_++] = box; }
+    void push(const Cell& box) { stack_[count_++] = box; }
     void meet(double time, bool certain) {
         if (!found_ || time < found_->time) found_ = Impact{time, certain};
     }
 
-    void visit(const Box box) {
+    void visit(const Cell box) {
         if (found_ && box.lo[0] >= found_->time - 0.5 * options_.time_tolerance) {
             skipped_ = std::min(skipped_, box.lo[0]);  // may hold an earlier meeting, within the tolerance
             return;
@@ -200,7 +200,7 @@ private:
     }
 
     /// Halves the side along which F changes most. A box in which F changes by rounding only counts as a meeting.
-    void split(const Box& box, const std::array<Vec3d, dimensions>& slopes) {
+    void split(const Cell& box, const std::array<Vec3d, dimensions>& slopes) {
         std::size_t widest = dimensions;
         double most = 0;
         bool matters = false;
@@ -217,7 +217,7 @@ private:
         if (found_ && box.width(0) > 0.25 * options_.time_tolerance && box.width(0) > min_width) widest = 0;
         if (widest == dimensions || !matters) return meet(box.lo[0], false);
         const double middle = 0.5 * (box.lo[widest] + box.hi[widest]);
-        Box lower = box, upper = box;
+        Cell lower = box, upper = box;
         lower.hi[widest] = upper.lo[widest] = middle;
         push(upper);
         push(lower);  // the next: earlier in time

@@ -249,6 +249,12 @@ private:
 
 }  // namespace
 
+float inertia_turn(const SolverMotion& motion, Vec3 rotation) {
+    const Vec3 about = rotate_back(motion.turned * motion.rotation, rotation), i = motion.moments;
+    const auto differ = [](float x, float y) { return std::abs(x - y) / std::max(x, y); };
+    return length(Vec3{about.x * differ(i.y, i.z), about.y * differ(i.z, i.x), about.z * differ(i.x, i.y)});
+}
+
 void turn_inertia(SolverMass& mass, const SolverMotion& motion) {
     const Mat3 r = to_matrix(normalized(motion.turned * motion.rotation));
     const Vec3 i{1 / motion.moments.x, 1 / motion.moments.y, 1 / motion.moments.z};

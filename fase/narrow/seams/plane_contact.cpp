@@ -26,8 +26,8 @@ CoreView view_of(const Shape& shape) {
 
 namespace {
 
-constexpr double gap = 1e-3;     // metres beyond a face that count as over it, for what comes over it
-constexpr double sliver = 1e-4;  // metres inside a face that do not yet count as over it
+constexpr double seam_gap = 1e-3;  // metres beyond a face that count as over it, for what comes over it
+constexpr double sliver = 1e-4;    // metres inside a face that do not yet count as over it
 
 /// The lowest feature of the shape's core above a plane. A face whose corners miss the lowest point counts as this
 /// point.
@@ -137,7 +137,7 @@ OverFace over_face(const MovingCore& mover, const ShownFaces& faces, int face) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(lowest.count); ++k)
             beyond = std::min(beyond, dot(out, lowest.corners[k].position - from));
         over.now = over.now && beyond < -sliver;
-        over.later = beyond + std::min(0.0, dot(out, mover.path)) <= gap;
+        over.later = beyond + std::min(0.0, dot(out, mover.path)) <= seam_gap;
         from = to;
     }
     over.now = over.now && over.later;
@@ -160,7 +160,7 @@ Manifold plane_contact(const MovingCore& mover, const ShownFaces& faces, int fac
     const auto add = [&](Vec3d on_core, std::uint32_t name) {
         const double separation = dot(plane.normal, on_core) - plane.offset - mover.view.radius;
         if (separation > limits.margin) return;
-        if (!limits.whole && separation < -limits.depth_beside && !faces.covers(face, on_core, gap)) return;
+        if (!limits.whole && separation < -limits.depth_beside && !faces.covers(face, on_core, seam_gap)) return;
         const Vec3d middle = on_core - plane.normal * (mover.view.radius + separation / 2);
         found.points[static_cast<std::size_t>(found.count++)] = {to_float(middle), static_cast<float>(separation),
                                                                  name};
