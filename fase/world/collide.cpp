@@ -71,14 +71,15 @@ WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& p
     return world;
 }
 
-/// Loads what update_active() will read of the active contacts after number i.
-void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i) {
+/// Loads what update_active() will read of the active contacts after number i. Those from `end` on may belong to
+/// another thread: of these it reads only what no contact changes in this stage.
+void prefetch_contact(const BodyTable& bodies, const ContactTable& contacts, std::size_t i, std::size_t end) {
     constexpr std::size_t near = 4, far = 8;
     const std::vector<std::uint32_t>& active = contacts.active.values;
     if (i + far < active.size()) detail::prefetch(contacts[active[i + far]]);
     if (i + near >= active.size()) return;
     const Contact& next = contacts[active[i + near]];
-    if (next.manifolds != 0) detail::prefetch(contacts.manifolds[next.first_manifold]);
+    if (i + near >= end || next.manifolds != 0) detail::prefetch(contacts.manifolds[next.first_manifold]);
     detail::prefetch(bodies.motion[next.body_a]);
     detail::prefetch(bodies.motion[next.body_b]);
 }
@@ -145,7 +146,7 @@ void update_active(const CollideTables& tables, std::size_t begin, std::size_t e
         if (!was_reused) compute_manifolds(tables, c);
     };
     for (std::size_t i = begin; i < end; ++i) {
-        prefetch_contact(tables.bodies, contacts, i);
+        prefetch_contact(tables.bodies, contacts, i, end);
         Contact& c = contacts[contacts.active.values[i]];
         reused[i] = c.on_mesh && !c.sensor ? on_mesh : not_reused;
         if (c.sensor || c.on_mesh || seams.is_grouped[i]) continue;
