@@ -43,6 +43,7 @@ SUITES = {
             "air, sinks when it rolls, or loses accuracy far from the origin.",
     "ghosts": "What slides, rolls or lands on tiles, T-junctions and blocks moves as on one box, at 0.1 to 60 m/s. Steps and walls stop, ramps and "
               "valleys turn, closed rooms hold.",
+    "tunnels": "Fast and spinning bodies pass no wall, however thin, and no mesh; thin bodies that hit the ground fast gain no energy.",
     "determinism": "The same calls give the same bits with any number of threads, with any structure, from a restored snapshot and in a world "
                    "that is built again. Random lives add, remove, change, save and restore; one that fails is shrunk to a short list of "
                    "calls.",
@@ -57,6 +58,8 @@ NOTES = """## Reading the table
 - `asleep_after_last_impact`: from the last hit faster than 1 m/s until all bodies sleep.
 - `ghosts`: `worst`, `p99`: the largest difference of velocity from the same start on one box, in any step; of the horizontal part after
   landings. `kicked`: runs with a difference above 2 cm/s and 2 %. `keeps_*`: speed, by energy, past a bend.
+- `tunnels`: `passed`: bodies on the other side of the wall or below the mesh at any time, of four speeds, with and without a spin of 100 rad/s.
+  `gains`: runs in which the energy rose by more than 2 %; `worst`: the largest energy, in that of the start.
 - `elastic_666`: the scene of [SimBenchmark](https://github.com/leggedrobotics/SimBenchmark), 6 × 6 × 6 elastic balls; the limit is the best published
   error in steps of 4 ms.
 - `sensor_left_*/steps_late`: steps between the one in which an overlap query finds the shapes apart, and the event.

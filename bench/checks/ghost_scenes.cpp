@@ -58,6 +58,27 @@ Shape six_sided_prism() {
     return hull ? Shape{*hull} : Shape{Box{{0.3f, 0.15f, 0.3f}}};
 }
 
+/// Rows of rectangles of random sizes, each of two triangles: their corners meet at T-junctions.
+void add_triangles(CheckWorld& world, const Material& material) {
+    Random random(5, 7);
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> indices;
+    for (float z = -floor_half; z < floor_half;) {
+        const float depth = random.between(0.2f, 0.9f);
+        for (float x = -floor_half; x < floor_half;) {
+            const float width = random.between(0.2f, 1.3f);
+            const auto first = static_cast<std::uint32_t>(positions.size());
+            positions.insert(positions.end(),
+                             {Vec3{x, 0, z}, {x, 0, z + depth}, {x + width, 0, z}, {x + width, 0, z + depth}});
+            for (const std::uint32_t i : {0u, 1u, 2u, 2u, 1u, 3u}) indices.push_back(first + i);
+            x += width;
+        }
+        z += depth;
+    }
+    const auto mesh = CollisionMesh::build(positions, indices);
+    if (world.succeeds(mesh)) world.add({.kind = BodyKind::Static}, Mesh{*mesh}, {.material = material});
+}
+
 }  // namespace
 
 void add_block(CheckWorld& world, Vec3d centre, Vec3 half, Quat rotation, const Material& material) {
@@ -72,6 +93,7 @@ void add_floor(CheckWorld& world, Floor floor, bool wall, const Material& materi
         case Floor::TJunctions: add_rows(world, material); break;
         case Floor::Uneven: add_tiles(world, 0.5f, 1, 1e-4f, material); break;
         case Floor::Blocks: add_tiles(world, 1, 2, 0, material); break;
+        case Floor::Triangles: add_triangles(world, material); break;
     }
     if (!wall) return;
     if (floor == Floor::Smooth) {

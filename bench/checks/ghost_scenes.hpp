@@ -17,6 +17,7 @@ enum class Floor {
     TJunctions,   ///< rows of boxes of 0.3 to 2 m
     Uneven,       ///< tiles whose tops are up to 0.1 mm higher or lower
     Blocks,       ///< two layers of cubes of 1 m
+    Triangles,    ///< a mesh of triangles of 0.2 to 1.3 m, without shared vertices
 };
 inline constexpr Material slippery{.friction = 0, .restitution = 0};
 /// Adds the ground, 24 m across. `wall`: and a wall of the same kind, whose face is z = 2.

@@ -118,6 +118,7 @@ std::vector<Case> ghost_cases() {
         all.push_back(over_seams("tiles", Floor::Tiles, {""}, kind, 1e-3, 1e-3));
         all.push_back(over_seams("turned_tiles", Floor::TurnedTiles, {""}, kind, 1e-3, 1e-3));
         all.push_back(over_seams("t_junctions", Floor::TJunctions, {""}, kind, 1e-3, 1e-3));
+        all.push_back(over_seams("triangles", Floor::Triangles, {""}, kind, 1e-3, 1e-3));
         all.push_back(over_seams("uneven", Floor::Uneven, {""}, kind, 5e-3, 5e-3));
         all.push_back(over_seams("blocks", Floor::Blocks, {""}, kind, 1e-3, 1e-3));
         all.push_back(over_seams("blocks", Floor::Blocks, {.name = "landing_on_", .falls = true}, kind, 5e-3, 0.1));

@@ -3,10 +3,10 @@
 
 namespace fase::checks {
 
-extern const Suite stacks, bounce, rest, ghosts, determinism;
+extern const Suite stacks, bounce, rest, ghosts, tunnels, determinism;
 
 std::span<const Suite* const> suites() {
-    static constexpr const Suite* all[]{&stacks, &bounce, &rest, &ghosts, &determinism};
+    static constexpr const Suite* all[]{&stacks, &bounce, &rest, &ghosts, &tunnels, &determinism};
     return all;
 }
 
