@@ -18,7 +18,8 @@ namespace {
 /// in the caches most of the time.
 constexpr std::uint64_t steps_per_turn = 10;
 
-constexpr StepScene all_scenes[]{{"large_pyramid", 200}, {"many_pyramids", 200}, {"hull_pile", 300}, {"washer", 300}};
+constexpr StepScene all_scenes[]{
+    {"large_pyramid", 200}, {"many_pyramids", 200}, {"hull_pile", 300}, {"washer", 300}, {"hills", 300}};
 
 /// Returns the error for an unknown name. `special`: a name that is valid but not in the list, or "".
 template <class List>

@@ -181,7 +181,7 @@ def queries_chart(path):
     return canvas.finish()
 
 
-STEP_SCENES = {"large_pyramid": "large pyramid", "many_pyramids": "many pyramids", "hull_pile": "pile of hulls", "washer": "washer"}
+STEP_SCENES = {"large_pyramid": "large pyramid", "many_pyramids": "many pyramids", "hull_pile": "pile of hulls", "washer": "washer", "hills": "hills of triangles"}
 STEP_ENGINES = {"fase": ("Fase", svg.BLUE), "bullet": ("Bullet", svg.VERMILION)}
 
 

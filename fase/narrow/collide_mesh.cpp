@@ -90,7 +90,8 @@ public:
           origin_(pose.position),
           middle_(pose.rotation * middle_of(shape)),
           margin_(margin),
-          reach_(reach) {
+          reach_(reach),
+          is_ball_(std::holds_alternative<Sphere>(shape)) {
         const Quat rotation = to_float(to_quat(pose.rotation));
         box_ = enlarged(bounds(shape, {{}, rotation}), margin * 1.001f);
         const float size = std::min(inner_radius(shape), 0.1f);
@@ -145,8 +146,16 @@ private:
             return;
         }
         if (is_far(near.nearest)) return;
-        const Distance nearest = distance_to(triangle);
+        Distance nearest = distance_to(near);
         if (!(nearest.distance <= margin_)) return;
+        if (nearest.distance == overlaps_here) {
+            // A part of the shape is a little below the triangle's face: that is the contact, whatever else is nearer.
+            if (face.count > 0 && double(face.points[deepest(face)].separation) >= -4 * shallow_) {
+                add(near, face);
+                return;
+            }
+            nearest = distance_of_cores(core_view(triangle), view_, at_);
+        }
         // What is apart from the triangle and below it passes under it, around an edge.
         if (nearest.distance > 0) remove_below(face, -shallow_);
         if (dot(nearest.normal, triangle.normal) >= same_normal && face.count > 0) {
@@ -178,16 +187,25 @@ private:
         return dot(normal, lowest_along(normal) - nearest) - view_.radius > margin_;
     }
 
-    /// The distance of the shape from a triangle; beyond the margin only that it is.
-    [[nodiscard]] Distance distance_to(const TriangleCore& triangle) const {
-        const CoreView core = core_view(triangle);
+    /// As a distance: the shapes overlap or nearly touch.
+    static constexpr double overlaps_here = -Aabb::infinity;
+
+    /// The distance of the shape from a triangle; beyond the margin only that it is, and when they overlap, too.
+    [[nodiscard]] Distance distance_to(const NearTriangle& near) const {
+        if (is_ball_) {
+            const Vec3d to = middle_ - near.nearest;
+            const double size = length(to);
+            if (!(size > 1e-4 * view_.radius)) return {overlaps_here, {}, {}, {}};
+            return {size - view_.radius, near.nearest, middle_, to * (1 / size)};
+        }
+        const CoreView core = core_view(near.triangle);
         GjkOptions options;
         options.farther_than = margin_ + view_.radius;
         options.tolerance = 1e-12;
         const GjkResult apart = gjk(core, view_, at_, options);
         if (apart.state == GjkResult::State::Farther) return {Aabb::infinity, {}, {}, {}};
-        if (apart.state == GjkResult::State::Overlap || !(apart.distance > 1e-4 * apart.scale))
-            return distance_of_cores(core, view_, at_);
+        if (apart.state == GjkResult::State::Overlap) return {overlaps_here, {}, {}, {}};
+        if (!(apart.distance > 1e-4 * apart.scale)) return distance_of_cores(core, view_, at_);
         return {apart.distance - view_.radius, apart.on_a, apart.on_b, apart.normal};
     }
 
@@ -448,6 +466,7 @@ private:
     Vec3d origin_;   ///< position of the shape in the mesh
     Vec3d middle_;
     double margin_, reach_;
+    bool is_ball_;
     double around_ = 0;   ///< radius of a sphere around the middle that holds the shape and the margin
     double touch_ = 0;    ///< metres within which triangles touch each other
     double shallow_ = 0;  ///< metres of penetration that are never due to a side of the shape
