@@ -219,7 +219,7 @@ void collide(const StepContext& context, const BodyTable& bodies, const Collider
         for (std::size_t i = begin; i < end; ++i) update_group(tables, context.seconds, seams.all[i], constraints);
     });
     update_meshes(tables, constraints.reused, context.tasks);
-    note_middles(bodies, colliders, moved, contacts, constraints);
+    note_middles(context.seconds, bodies, colliders, moved, contacts, constraints);
     gather_constraints(bodies, context.settings.linear_slop, contacts, constraints);
     StepReport& report = context.report;
     report.manifolds += static_cast<std::uint32_t>(constraints.all.size());

@@ -100,22 +100,33 @@ private:
     double gap_;  ///< metres that the middle keeps from the surface
 };
 
+/// Whether a kinematic body sweeps through others because it turns.
+bool turns_fast(const BodyTable& bodies, std::uint32_t body, float seconds) {
+    constexpr float min_turn = 0.05f;  // radians per step
+    const dynamics::BodyTraits& traits = bodies.traits[body];
+    return traits.kind == BodyKind::Kinematic && traits.motion_state == MotionState::Awake &&
+           length_squared(bodies.motion[body].angular_velocity) * seconds * seconds > min_turn * min_turn;
+}
+
 }  // namespace
 
-void note_middles(const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
+void note_middles(float seconds, const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
                   const ContactTable& contacts, Constraints& constraints) {
     std::vector<MiddlePath>& paths = constraints.middle_paths;
     paths.clear();
+    const bool any_other = colliders.meshes != 0 || std::ranges::any_of(bodies.awake, [&](std::uint32_t body) {
+                               return turns_fast(bodies, body, seconds);
+                           });
     for (const std::uint32_t body : bodies.awake) {
         if (bodies.traits[body].kind != BodyKind::Dynamic) continue;
         const bool fast = moved.sweep[body] > 0;
-        if (!fast && colliders.meshes == 0) continue;
+        if (!fast && !any_other) continue;
         for (std::uint32_t c = bodies.traits[body].first_collider; c != no_index; c = colliders[c].next)
             contacts.graph.for_each_of(c, [&](std::uint32_t index) {
                 const Contact& contact = contacts[index];
                 const std::uint32_t other = contact.body_a == body ? contact.body_b : contact.body_a;
-                if (contact.sensor || bodies.traits[other].kind == BodyKind::Dynamic || !(fast || contact.on_mesh))
-                    return;
+                if (contact.sensor || bodies.traits[other].kind == BodyKind::Dynamic) return;
+                if (!fast && !contact.on_mesh && !turns_fast(bodies, other, seconds)) return;
                 paths.push_back({index, middle_in_other(bodies, colliders, Sides(bodies, contact))});
             });
     }

@@ -24,11 +24,14 @@ constexpr float max_frequency_share = 0.1f;
 // share of frequency and damping ratio, the root of 1/2, keeps stiffness and damping of the contact as they were: what
 // lies beside a body that falls asleep or wakes does not jump.
 constexpr float sleeper_share = 0.70710678f;
-// Radians per sub-step by which the inertia tensor of a body turns, and above which it is computed in each sub-step.
-// With that of the beginning of the step, contacts give thin bodies that spin fast energy without bound.
-constexpr float fast_turn = 0.1f;
-// The same between the two passes of a sub-step. The relax pass then keeps the velocity of push-out, so only where the
-// contact of before is meaningless.
+// Slower bodies, in radians per sub-step, keep the inertia tensor of the beginning of the step.
+constexpr float slow_turn = 1e-3f;
+// The change of an inverse inertia tensor per sub-step above which it is computed in each sub-step, with what depends
+// on it: InertiaTurn::change. With that of the beginning of the step, contacts give thin bodies that spin energy
+// without bound.
+constexpr float fast_change = 0.2f;
+// The same between the two passes of a sub-step, above this angle in radians. The relax pass then keeps the velocity of
+// push-out, so only where the contact of before is meaningless.
 constexpr float whirling_turn = 0.6f;
 // Radians per step above which the same is done for any rotation, also for one about an axis of symmetry.
 constexpr float max_turn_per_step = 4;
@@ -237,12 +240,13 @@ void BatchSolver::run(const BatchInput& in, TaskRunner& tasks) {
 
 bool BatchSolver::turn_fast_bodies(const BatchInput& in, bool within_sub_step, TaskRunner& tasks) {
     const float h = in.lanes.settings.sub_step();
-    const float min_turn = within_sub_step ? whirling_turn : fast_turn;
     const float max_turn = max_turn_per_step / static_cast<float>(in.lanes.settings.sub_steps);
     const auto is_fast = [&](std::uint32_t row) {
         const Vec3 turn = read(in.rows[row].spin) * h;
-        return in.motions[row].gyroscopic && length_squared(turn) > min_turn * min_turn &&
-               (length_squared(turn) > max_turn * max_turn || inertia_turn(in.motions[row], turn) > min_turn);
+        if (!in.motions[row].gyroscopic || !(length_squared(turn) > slow_turn * slow_turn)) return false;
+        if (length_squared(turn) > max_turn * max_turn) return true;
+        const InertiaTurn of_inertia = inertia_turn(in.motions[row], turn);
+        return within_sub_step ? of_inertia.angle > whirling_turn : of_inertia.change > fast_change;
     };
     bool any = false;
     for (std::uint32_t row = in.batch.first_row; row < in.batch.first_row + in.batch.bodies; ++row) {

@@ -249,10 +249,14 @@ private:
 
 }  // namespace
 
-float inertia_turn(const SolverMotion& motion, Vec3 rotation) {
+InertiaTurn inertia_turn(const SolverMotion& motion, Vec3 rotation) {
     const Vec3 about = rotate_back(motion.turned * motion.rotation, rotation), i = motion.moments;
-    const auto differ = [](float x, float y) { return std::abs(x - y) / std::max(x, y); };
-    return length(Vec3{about.x * differ(i.y, i.z), about.y * differ(i.z, i.x), about.z * differ(i.x, i.y)});
+    const auto turn = [&](const auto& differ) {
+        return length(Vec3{about.x * differ(i.y, i.z), about.y * differ(i.z, i.x), about.z * differ(i.x, i.y)});
+    };
+    return {turn([](float x, float y) { return std::abs(x - y) / std::max(x, y); }), turn([&](float x, float y) {
+                return std::max({i.x, i.y, i.z}) * std::abs(1 / x - 1 / y);
+            })};
 }
 
 void turn_inertia(SolverMass& mass, const SolverMotion& motion) {

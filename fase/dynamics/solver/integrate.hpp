@@ -51,9 +51,12 @@ void integrate_poses(std::span<SolverBody> bodies, std::span<SolverMotion> motio
 /// |x| < 0.1.
 [[nodiscard]] double approximate_tangent(double x);
 
-/// Returns by how many radians a rotation turns the inertia tensor of a gyroscopic body: that about an axis of symmetry
-/// does not.
-[[nodiscard]] float inertia_turn(const SolverMotion& motion, Vec3 rotation);
+/// How far a rotation turns the inertia tensor of a gyroscopic body: that about an axis of symmetry does not.
+struct InertiaTurn {
+    float angle = 0;   ///< radians, the difference of the moments taken into account
+    float change = 0;  ///< of the inverse tensor, in its smallest value: large for thin bodies
+};
+[[nodiscard]] InertiaTurn inertia_turn(const SolverMotion& motion, Vec3 rotation);
 /// Sets the world inverse inertia of a gyroscopic body as it stands now, within the step.
 void turn_inertia(SolverMass& mass, const SolverMotion& motion);
 

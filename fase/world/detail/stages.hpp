@@ -64,10 +64,10 @@ void finish(const StepContext& context, const dynamics::Solver& solver, const Co
             const MotionStates& state);
 
 /// Keeps the middles of shapes from crossing shapes of static and kinematic bodies: what contacts missed, because a
-/// body rotated fast or was pushed. note_middles() is a part of collide().
+/// body rotated fast or was pushed. note_middles() is a part of collide(); `seconds`: of the step.
 void hold_middles(const StepContext& context, const ColliderTable& colliders, const ContactTable& contacts,
                   const Constraints& constraints, BodyTable& bodies);
-void note_middles(const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
+void note_middles(float seconds, const BodyTable& bodies, const ColliderTable& colliders, const Moved& moved,
                   const ContactTable& contacts, Constraints& constraints);
 
 // events

@@ -61,7 +61,7 @@ struct Constraints {
     std::vector<std::uint32_t> checked;  ///< resting contacts that this step collided
     std::vector<std::uint8_t> reused;    ///< by active pair: the manifolds of the last step were reused
     SeamGroups seams;
-    std::vector<MiddlePath> middle_paths;  ///< of fast bodies, and of contacts with meshes; in the order of pairs
+    std::vector<MiddlePath> middle_paths;  ///< of fast bodies, on meshes, beside what turns; in the order of pairs
     std::vector<std::uint8_t> roles;       ///< by body, inside gather_constraints(): what contacts do to it
     std::uint32_t points = 0;              ///< of all constraints together
     bool beside_sleepers = false;          ///< a constraint may have a dynamic body that sleeps
