@@ -115,6 +115,7 @@ private:
         const Aabb in_mesh = rounded_outward(to_double(box_.lo) + origin_, to_double(box_.hi) + origin_);
         mesh_.data->tree().visit(detail::unscaled(mesh_, in_mesh), [&](std::uint32_t place) {
             const TriangleCore triangle(mesh_, place, origin_);
+            if (!(length_squared(triangle.normal) > 0)) return;  // scaling took its area
             Vec3d lo = triangle.corners[0], hi = lo;
             for (const Vec3d corner : triangle.corners) {
                 lo = min(lo, corner);
@@ -370,11 +371,12 @@ private:
         std::uint32_t groups = 0;
         for (FoundContact& c : contacts) c.group = none;
         for (;;) {
-            const FoundContact* leader = nullptr;
-            for (const FoundContact& c : contacts)
+            FoundContact* leader = nullptr;
+            for (FoundContact& c : contacts)
                 if (c.group == none && (leader == nullptr || c.nearest < leader->nearest)) leader = &c;
             if (leader == nullptr) return groups;
             const Vec3 normal = leader->normal;
+            leader->group = groups;
             for (FoundContact& c : contacts)
                 if (c.group == none && dot(c.normal, normal) >= cosine) c.group = groups;
             ++groups;

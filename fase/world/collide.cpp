@@ -50,20 +50,12 @@ struct NearbyFrames {
 
 WorldManifold in_world_axes(const narrow::Manifold& manifold, const LocalPose& pose_a, const LocalPose& pose_b,
                             const NearbyFrames& frames, bool a_is_half_space, Vec3 b_from_a) {
-    WorldManifold world;
-    world.count = manifold.count;
-    if (manifold.count == 0) return world;
-    Vec3 centre;
-    for (int i = 0; i < manifold.count; ++i) centre += manifold.points[static_cast<std::size_t>(i)].position;
-    centre *= 1.0f / static_cast<float>(manifold.count);
+    if (manifold.count == 0) return {};
     const Mat3 axes = to_matrix(pose_a.rotation);
+    Vec3 centre;
+    WorldManifold world = around_centre(
+        manifold, [&](Vec3 v) { return axes * v; }, centre);
     world.normal = axes * manifold.normal;
-    for (int i = 0; i < manifold.count; ++i) {
-        const narrow::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-        world.points[i] = axes * (point.position - centre);
-        world.separation[i] = point.separation;
-        world.feature[i] = point.feature;
-    }
     world.offset_a = frames.origin_a + axes * centre;
     // The place relative to a body on a half-space is exact; that relative to the far origin of the half-space is not.
     world.offset_b =

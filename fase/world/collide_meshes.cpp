@@ -56,19 +56,11 @@ private:
 
     [[nodiscard]] KeyedManifold in_world_axes(const narrow::MeshManifold& found) const {
         const narrow::Manifold& manifold = found.manifold;
-        KeyedManifold world;
-        world.key.triangle = mesh_.data->number(found.triangle);
-        world.count = manifold.count;
         const Mat3 axes = to_matrix(mesh_pose_.rotation);
         Vec3 centre;
-        for (int i = 0; i < manifold.count; ++i) centre += manifold.points[static_cast<std::size_t>(i)].position;
-        centre *= 1.0f / static_cast<float>(manifold.count);
-        for (int i = 0; i < manifold.count; ++i) {
-            const narrow::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-            world.points[i] = axes * (point.position - centre);
-            world.separation[i] = point.separation;
-            world.feature[i] = point.feature;
-        }
+        KeyedManifold world{around_centre(
+                                manifold, [&](Vec3 v) { return axes * v; }, centre),
+                            {.triangle = mesh_.data->number(found.triangle)}};
         // The place relative to the shape's body is exact; that relative to the far origin of the mesh is not.
         const Vec3 from_other = other_pose_.position + axes * centre;
         world.offset_a = mesh_is_b_ ? from_other : from_other + b_from_a_;

@@ -222,6 +222,16 @@ TEST(MeshContacts, on_a_flat_mesh_are_those_of_a_plane) {
     }
 }
 
+TEST(MeshContacts, triangles_that_scaling_makes_flat_have_none) {
+    const std::vector<Vec3> corners{{1, 0, 0}, {1, 1, 0.5f}, {1, 2, 1.0001f}, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+    const std::vector<std::uint32_t> indices{0, 1, 2, 3, 4, 5};
+    const Mesh mesh{*CollisionMesh::build(corners, indices), {1e-4f, 1e-4f, 1e4f}};
+    narrow::MeshContacts contacts;
+    TransformD x;
+    x.position = {0, 0.2, 0.5};
+    for (const float margin : {0.0f, 1.0f, 1e4f}) EXPECT_LE(contacts.find(mesh, Sphere{0.25f}, x, margin).size(), 2u);
+}
+
 TEST(MeshContacts, of_a_closed_surface_push_outward_by_the_distance) {
     Random random(8);
     narrow::MeshContacts contacts;

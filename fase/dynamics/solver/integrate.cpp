@@ -259,16 +259,20 @@ InertiaTurn inertia_turn(const SolverMotion& motion, Vec3 rotation) {
             })};
 }
 
-void turn_inertia(SolverMass& mass, const SolverMotion& motion) {
-    const Mat3 r = to_matrix(normalized(motion.turned * motion.rotation));
-    const Vec3 i{1 / motion.moments.x, 1 / motion.moments.y, 1 / motion.moments.z};
-    const Vec3 x = r.x * i.x, y = r.y * i.y, z = r.z * i.z;
+void set_inertia(SolverMass& mass, Vec3 inverse_moments, Quat rotation) {
+    const Mat3 r = to_matrix(rotation);
+    const Vec3 i = inverse_moments, x = r.x * i.x, y = r.y * i.y, z = r.z * i.z;
     mass.inertia[0] = r.x.x * x.x + r.y.x * y.x + r.z.x * z.x;
     mass.inertia[1] = r.x.x * x.y + r.y.x * y.y + r.z.x * z.y;
     mass.inertia[2] = r.x.x * x.z + r.y.x * y.z + r.z.x * z.z;
     mass.inertia[3] = r.x.y * x.y + r.y.y * y.y + r.z.y * z.y;
     mass.inertia[4] = r.x.y * x.z + r.y.y * y.z + r.z.y * z.z;
     mass.inertia[5] = r.x.z * x.z + r.y.z * y.z + r.z.z * z.z;
+}
+
+void turn_inertia(SolverMass& mass, const SolverMotion& motion) {
+    set_inertia(mass, {1 / motion.moments.x, 1 / motion.moments.y, 1 / motion.moments.z},
+                normalized(motion.turned * motion.rotation));
 }
 
 double approximate_tangent(double x) { return tangent_of(x); }

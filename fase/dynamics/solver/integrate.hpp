@@ -57,6 +57,8 @@ struct InertiaTurn {
     float change = 0;  ///< of the inverse tensor, in its smallest value: large for thin bodies
 };
 [[nodiscard]] InertiaTurn inertia_turn(const SolverMotion& motion, Vec3 rotation);
+/// Sets the world inverse inertia R diag(inverse moments) Rᵀ of a body without locked axes.
+void set_inertia(SolverMass& mass, Vec3 inverse_moments, Quat rotation);
 /// Sets the world inverse inertia of a gyroscopic body as it stands now, within the step.
 void turn_inertia(SolverMass& mass, const SolverMotion& motion);
 

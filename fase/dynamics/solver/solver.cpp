@@ -15,15 +15,11 @@ namespace {
 constexpr std::size_t body_grain = 256;
 constexpr std::size_t prefetch_ahead = 6;  // manifolds
 
-/// Computes the world inverse inertia R diag(inverse moments) Rᵀ of a body. A locked axis does not rotate: its angular
+/// Computes the world inverse inertia of a body. A locked axis does not rotate: its angular
 /// momentum is left out by a Schur complement, so the other axes respond as if held there.
 void world_inertia(SolverMass& mass, const BodyTraits& traits, Quat rotation) {
-    const Mat3 r = to_matrix(rotation);
-    const Vec3 i = traits.inverse_moments;
-    const Vec3 x = r.x * i.x, y = r.y * i.y, z = r.z * i.z;
-    float m[6] = {r.x.x * x.x + r.y.x * y.x + r.z.x * z.x, r.x.x * x.y + r.y.x * y.y + r.z.x * z.y,
-                  r.x.x * x.z + r.y.x * y.z + r.z.x * z.z, r.x.y * x.y + r.y.y * y.y + r.z.y * z.y,
-                  r.x.y * x.z + r.y.y * y.z + r.z.y * z.z, r.x.z * x.z + r.y.z * y.z + r.z.z * z.z};
+    set_inertia(mass, traits.inverse_moments, rotation);
+    float(&m)[6] = mass.inertia;
     constexpr int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     for (int axis = 0; axis < 3; ++axis) {
         if (!(traits.locks & (8u << axis))) continue;
@@ -38,7 +34,6 @@ void world_inertia(SolverMass& mass, const BodyTraits& traits, Quat rotation) {
                                                                : entry;
             }
     }
-    std::copy(m, m + 6, mass.inertia);
 }
 
 }  // namespace

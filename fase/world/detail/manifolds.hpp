@@ -69,6 +69,24 @@ struct WorldManifold {
     std::uint32_t feature[4] = {};
 };
 
+/// Returns the points of a manifold relative to their centre, which `centre` receives in the manifold's frame.
+/// `to_world(v)` rotates from that frame to world axes. Normal and offsets are left to the caller.
+template <class F>
+[[nodiscard]] WorldManifold around_centre(const narrow::Manifold& manifold, const F& to_world, Vec3& centre) {
+    WorldManifold world;
+    world.count = manifold.count;
+    if (manifold.count == 0) return world;
+    for (int i = 0; i < manifold.count; ++i) centre += manifold.points[static_cast<std::size_t>(i)].position;
+    centre *= 1.0f / static_cast<float>(manifold.count);
+    for (int i = 0; i < manifold.count; ++i) {
+        const narrow::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
+        world.points[i] = to_world(point.position - centre);
+        world.separation[i] = point.separation;
+        world.feature[i] = point.feature;
+    }
+    return world;
+}
+
 /// Stores the manifold of two convex shapes in their contact. Its points take over the impulses of old points near by;
 /// a single point those of a single point anywhere.
 void store_manifold(dynamics::Contact& contact, dynamics::ContactManifold& manifold, const WorldManifold& world,

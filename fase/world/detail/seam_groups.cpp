@@ -74,21 +74,13 @@ narrow::Manifold read_manifold(const Contact& c, const ContactManifold& m, bool 
 
 /// Converts back.
 WorldManifold world_manifold(const narrow::Manifold& manifold, bool mover_is_b, Vec3 b_from_a) {
-    WorldManifold world;
-    world.count = manifold.count;
-    if (manifold.count == 0) return world;
     Vec3 centre;
-    for (int i = 0; i < manifold.count; ++i) centre += manifold.points[static_cast<std::size_t>(i)].position;
-    centre *= 1.0f / static_cast<float>(manifold.count);
+    WorldManifold world = around_centre(
+        manifold, [](Vec3 v) { return v; }, centre);
+    if (world.count == 0) return world;
     world.normal = mover_is_b ? manifold.normal : -manifold.normal;
     world.offset_a = mover_is_b ? centre + b_from_a : centre;
     world.offset_b = mover_is_b ? centre : centre - b_from_a;
-    for (int i = 0; i < manifold.count; ++i) {
-        const narrow::ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
-        world.points[i] = point.position - centre;
-        world.separation[i] = point.separation;
-        world.feature[i] = point.feature;
-    }
     return world;
 }
 
